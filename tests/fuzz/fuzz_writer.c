@@ -18,7 +18,8 @@ size_t fuzz_memory(size_t n)
 
 static void check_order(const struct order *order)
 {
-	TEST_ASSERT_TRUE(order->kind == ORDER_REPLACE || order->kind == ORDER_RESTORE);
+	TEST_ASSERT_TRUE(order->kind == ORDER_REPLACE || order->kind == ORDER_RESTORE ||
+	                 order->kind == ORDER_RENAME);
 	TEST_ASSERT_TRUE(order->length <= RIO_FILE_MAX);
 	TEST_ASSERT_TRUE(strlen(order->base) == 0 || strlen(order->base) == TAG_TEXT - 1);
 	TEST_ASSERT_NOT_NULL(memchr(order->person, '\0', sizeof(order->person)));
@@ -28,16 +29,20 @@ static void check_order(const struct order *order)
 
 static void check_again(const struct order *order)
 {
-	char text[ORDER_HEAD_MAX], length[40] = "";
+	static const char *const kinds[] = {[ORDER_REPLACE] = "replace",
+	                                    [ORDER_RESTORE] = "restore",
+	                                    [ORDER_RENAME] = "rename"};
+	char text[ORDER_HEAD_MAX], base[TAG_TEXT + 8] = "", length[40] = "";
 	struct order again;
 	const char *why;
 	int n;
 
-	if (order->kind == ORDER_REPLACE)
+	if (order->kind != ORDER_RENAME)
+		snprintf(base, sizeof(base), "base: %s\n", order->base);
+	if (order->kind != ORDER_RESTORE)
 		snprintf(length, sizeof(length), "length: %zu\n", order->length);
-	n = snprintf(text, sizeof(text), "owsd-writer 1\ndo: %s\nbase: %s\nfor: %s\n%s\n",
-	             order->kind == ORDER_REPLACE ? "replace" : "restore", order->base,
-	             order->person, length);
+	n = snprintf(text, sizeof(text), "owsd-writer 1\ndo: %s\n%sfor: %s\n%s\n",
+	             kinds[order->kind], base, order->person, length);
 	TEST_ASSERT_EQUAL_INT_MESSAGE(n, order_parse(text, (size_t)n, &again, &why), text);
 	TEST_ASSERT_EQUAL_INT(order->kind, again.kind);
 	TEST_ASSERT_EQUAL_STRING(order->base, again.base);

@@ -365,6 +365,7 @@ def writer():
     put("writer", "replace", head + b"do: replace\n" + tag + b"for: anna\nlength: 11\n\nOwsDrv {\n}\n")
     put("writer", "first", head + b"do:replace\nbase:\nlength:0\n\n")
     put("writer", "restore", head + tag + b"do: restore\n\n")
+    put("writer", "rename", head + b"do: rename\nlength: 9\n\nroom\nhall")
     put("writer", "half", head + b"do: replace\n" + tag)
     put("writer", "long", head + b"for: " + b"x" * 1100)
     put("writer", "bytes", head + b"for: \xc5\xbdan\xff\x00\n" + tag + b"do: restore\n\n")

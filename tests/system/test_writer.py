@@ -117,6 +117,23 @@ def test_a_restore_is_undone_by_another(scene):
         assert scene.owsctl(daemon, "list", has).returncode == 0
 
 
+def test_a_rename_keeps_the_identity_and_the_file_of_before(scene):
+    daemon, writer, _ = start(scene)
+    old = daemon.config.read_text()
+    for names, words in (("nobody\nhall", "nobody"), ("room\nroom", "the name that it has"), ("room\nha/ll", "one of"),
+                         ("room\nha\nll", "control character"), ("room", "a line end"), (f"{'r' * 64}\nhall", "rrr")):
+        answer = writer.rename(names)
+        # a name that the file cannot have is a fault of the text
+        assert answer.status in ("refused", "invalid") and words in answer.text, answer.text
+    assert daemon.config.read_text() == old and not writer.before().exists()
+    done = writer.rename("room\nhall", person="anna")
+    assert (done.status, done.reload) == ("done", "done"), done.text
+    assert daemon.config.read_text() == old.replace('"room"', '"hall"') and writer.before().read_text() == old
+    assert done.tag == tag_of(daemon.config) and done.backup.split()[0] == tag(old.encode()), done.text
+    assert scene.owsctl(daemon, "list", "hall").returncode == 0
+    until(lambda: "rename by user" in writer.log(), 10, writer.log)
+
+
 def test_the_text_that_the_file_has_already_leaves_the_file_of_before_alone(scene):
     daemon, writer, target = start(scene)
     old, new = daemon.config.read_text(), rio(target, ROOM, CELLAR)

@@ -57,7 +57,8 @@ def answer_of(door):
 
 
 def order(base, body=None, person=None, do="replace"):
-    lines = ["owsd-writer 1", f"do: {do}", f"base: {base}"]
+    lines = ["owsd-writer 1", f"do: {do}"]
+    lines += [f"base: {base}"] if base is not None else []
     lines += [f"for: {person}"] if person else []
     lines += [f"length: {len(body)}"] if body is not None else []
     return "\n".join(lines).encode() + b"\n\n" + (body or b"")
@@ -113,6 +114,9 @@ class Writer(owsdtest.Program):
     def restore(self, base=None, person=None):
         base = tag_of(self.file) if base is None else base
         return ask(self.socket, order(base, None, person, "restore"))
+
+    def rename(self, names, person=None):
+        return ask(self.socket, order(None, names.encode(), person, "rename"))
 
     def before(self):
         return self.file.with_name(self.file.name + ".before")

@@ -37,8 +37,10 @@ static const char *parse_kind(struct word value, struct order *order)
 		order->kind = ORDER_REPLACE;
 	else if (is_word(value, "restore"))
 		order->kind = ORDER_RESTORE;
+	else if (is_word(value, "rename"))
+		order->kind = ORDER_RENAME;
 	else
-		return "do: expected replace or restore";
+		return "do: expected replace, restore or rename";
 	return NULL;
 }
 
@@ -118,9 +120,12 @@ static const char *check_keys(unsigned had, const struct order *order)
 {
 	if (!(had & 1u << KEY_DO))
 		return "do: is missing";
-	if (!(had & 1u << KEY_BASE))
+	/* who renames names what is there now, whatever the file was */
+	if (order->kind == ORDER_RENAME && (had & 1u << KEY_BASE))
+		return "base: a rename has none";
+	if (order->kind != ORDER_RENAME && !(had & 1u << KEY_BASE))
 		return "base: is missing";
-	if (order->kind == ORDER_REPLACE && !(had & 1u << KEY_LENGTH))
+	if (order->kind != ORDER_RESTORE && !(had & 1u << KEY_LENGTH))
 		return "length: is missing";
 	if (order->kind == ORDER_RESTORE && (had & 1u << KEY_LENGTH))
 		return "length: a restore has no bytes";

@@ -20,6 +20,7 @@
 enum order_kind {
 	ORDER_REPLACE, /* length bytes follow: the new file */
 	ORDER_RESTORE, /* put the file of before in place */
+	ORDER_RENAME,  /* length bytes follow: the name of an item, a line end, its new name */
 };
 
 struct order {

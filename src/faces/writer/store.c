@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "src/config/check/check.h"
+#include "src/config/edit/edit.h"
 #include "src/config/edit/replace.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
@@ -271,5 +272,57 @@ void store_restore(const char *file, const struct order *order, struct answer *a
 out:
 	store_forget(&present);
 	store_forget(&before);
+	replace_unlock(file, fd);
+}
+
+/* What is wrong with a name is the reason; a warning is one of the text that follows. */
+static void take_fault(void *ctx, bool is_error, int line, int column, const char *text)
+{
+	if (is_error)
+		answer_say(ctx, ANSWER_REFUSED, "%s", text);
+	else
+		answer_problem(ctx, is_error, line, column, text);
+}
+
+static void rename_in(const char *file, const char *backup, const struct stored *present,
+                      const char *names, struct answer *answer)
+{
+	struct config_report silent = {0}, report = {.problem = take_fault, .ctx = answer};
+	const char *to = strchr(names, '\n');
+	char *name = to ? strndup(names, (size_t)(to - names)) : NULL;
+	struct rio *rio = NULL;
+	int err;
+
+	if (!present->text || !name) {
+		answer_say(answer, ANSWER_REFUSED,
+		           "expected the name of an item, a line end and another name");
+		free(name);
+		return;
+	}
+	err = rio_parse(file, present->text, present->len, &silent, &rio);
+	/* a text with errors is refused with all of them below */
+	if (!err && !silent.errors)
+		err = edit_rename(&rio, name, to + 1, &report);
+	if (!err)
+		exchange_texts(file, backup, true, present, rio->text, rio->len, answer);
+	else if (!report.errors)
+		answer_say(answer, ANSWER_ERROR, "%s", strerror(-err));
+	rio_free(rio);
+	free(name);
+}
+
+void store_rename(const char *file, const char *names, struct answer *answer)
+{
+	struct stored present = {0};
+	char backup[PATH_MAX];
+	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
+
+	if (fd < 0)
+		return;
+	if (store_load(file, &present, answer) == 0) {
+		show_tag(answer, present.tag);
+		rename_in(file, backup, &present, names, answer);
+	}
+	store_forget(&present);
 	replace_unlock(file, fd);
 }

@@ -20,3 +20,5 @@ void store_replace(const char *file, const struct order *order, const char *text
                    struct answer *answer);
 /* Put the file of before in place likewise; the present one is then the file of before. */
 void store_restore(const char *file, const struct order *order, struct answer *answer);
+/* Give an item of the file another name; names: that of now, a line end, the other. */
+void store_rename(const char *file, const char *names, struct answer *answer);

@@ -170,6 +170,9 @@ static void carry_out(const struct writer *writer, const struct order *order, co
 	case ORDER_RESTORE:
 		store_restore(writer->file, order, answer);
 		break;
+	case ORDER_RENAME:
+		store_rename(writer->file, body, answer);
+		break;
 	}
 	if (answer->status == ANSWER_DONE)
 		ask_reload(writer, answer);
@@ -226,6 +229,7 @@ void visit(const struct writer *writer, int fd, bool may)
 	log_visit(writer, &peer,
 	          !body                         ? "request"
 	          : order.kind == ORDER_RESTORE ? "restore"
+	          : order.kind == ORDER_RENAME  ? "rename"
 	                                        : "replace",
 	          &order, &answer);
 	hold_signals(false);

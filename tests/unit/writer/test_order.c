@@ -59,6 +59,15 @@ static void test_a_restore_has_a_base_and_no_length(void)
 	refuses(FIRST "do: restore\nbase: " TAG "\nlength: 3\n\n", "a restore has no bytes");
 }
 
+static void test_a_rename_has_a_length_and_no_base(void)
+{
+	TEST_ASSERT_GREATER_THAN(0, parse(FIRST "do: rename\nlength: 12\n\n"));
+	TEST_ASSERT_EQUAL_INT(ORDER_RENAME, order.kind);
+	TEST_ASSERT_EQUAL_size_t(12, order.length);
+	refuses(FIRST "do: rename\nbase: " TAG "\nlength: 3\n\n", "a rename has none");
+	refuses(FIRST "do: rename\n\n", "length: is missing");
+}
+
 static void test_another_version_is_refused_at_its_first_byte(void)
 {
 	refuses("G", "owsd-writer 1");
@@ -83,7 +92,7 @@ static void test_values_that_cannot_be_are_refused(void)
 {
 	char text[200];
 
-	refuses(FIRST "do: remove\n\n", "replace or restore");
+	refuses(FIRST "do: remove\n\n", "replace, restore or rename");
 	refuses(FIRST "base: 0123\n\n", "16 digits");
 	refuses(FIRST "base: 0123456789ABCDEF\n\n", "small letters");
 	refuses(FIRST "base: 0123456789abcdefa\n\n", "16 digits");
@@ -142,6 +151,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_whole_head_has_its_length_and_all_before_has_none);
 	RUN_TEST(test_a_restore_has_a_base_and_no_length);
+	RUN_TEST(test_a_rename_has_a_length_and_no_base);
 	RUN_TEST(test_another_version_is_refused_at_its_first_byte);
 	RUN_TEST(test_what_is_missing_or_twice_is_said);
 	RUN_TEST(test_values_that_cannot_be_are_refused);
