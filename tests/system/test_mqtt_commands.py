@@ -12,8 +12,9 @@ import subprocess
 import threading
 
 import owsdtest
-from mqtthouse import RELAY, ROOM, SWITCH, House, item, program
-from owsdtest import logged, raw, until
+from mqtthouse import ABSENT, RELAY, ROOM, SENSOR, SWITCH, House, item, program
+from owsdtest import logged, raw, segment, until
+from writing import Writer
 
 DIAL = item("dial", f"/{SWITCH}/PIO.BYTE", "byte", "output", Max=200)
 LAMP = {**DIAL, "Min": 0, "Class": "light"}
@@ -117,6 +118,64 @@ def test_by_mqtt_5_who_asks_names_the_topic_of_the_answer(scene):
         command(house, "relay", "off", "-V", "5", "-D", "publish", "response-topic", reply)
     until(lambda: len(house.listener.all("owsd/pi7/relay/result")) == 4, 20, lambda: house.listener.all())
     assert not [t for _, t, _ in house.listener.all() if t in ("owsd/pi8/relay/set", "homeassistant/device/x/config")]
+
+
+def devices(house, *more):
+    """The list of devices, by their ids, and the whole answer."""
+    result = "owsd/pi7/chip/result"
+    count = len(house.listener.all(result))
+    publish(house, "owsd/pi7/chip/get", '{"id":"a1"}', *more)
+    until(lambda: len(house.listener.all(result)) > count, 20, house.face.log)
+    answer = json.loads(house.listener.last(result))
+    assert answer["id"] == "a1", answer
+    return {device["id"]: device for device in answer["devices"]}, answer
+
+
+def test_a_list_has_the_devices_of_the_table_and_those_that_were_found(scene):
+    house = ready(scene, ROOM, {**ROOM, "Name": "again"}, ABSENT)
+    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
+    house.says("owsd/pi7/chip/28.FFFFFFFFFFFF", "offline")
+    until(lambda: SWITCH in devices(house)[0], 20, lambda: devices(house)[1])
+    found, answer = devices(house)
+    assert sorted(found) == sorted([SENSOR, SWITCH, "28.FFFFFFFFFFFF"]) and answer["searched"], answer
+    target = f"sim:{house.wire}"
+    assert found[SENSOR] == {"id": SENSOR, "family": "28", "type": "DS18B20", "target": target, "path": f"/{SENSOR}",
+                             "chip": SENSOR, "state": "online", "signals": ["room", "again"]}, answer
+    assert found[SWITCH] == {"id": SWITCH, "family": "29", "target": target, "path": f"/{SWITCH}", "signals": []}, answer
+    assert found["28.FFFFFFFFFFFF"]["state"] == "offline", answer
+    # who may not ask owsd for what is on its wires gets the table, and why there is no more
+    segment(house.daemon.name, "sock").unlink()
+    found, answer = devices(house)
+    assert sorted(found) == sorted([SENSOR, "28.FFFFFFFFFFFF"]) and answer["searched"] is False and answer["why"], answer
+
+
+def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
+    house = ready(scene, ROOM, RELAY, Rename=raw("on"))
+    result, old = "owsd/pi7/room/result", house.daemon.config.read_text()
+
+    def answers(name, text, words):
+        count = len(house.listener.all(f"owsd/pi7/{name}/result"))
+        publish(house, f"owsd/pi7/{name}/rename", text)
+        until(lambda: len(house.listener.all(f"owsd/pi7/{name}/result")) > count, 40, house.face.log)
+        assert words in house.listener.last(f"owsd/pi7/{name}/result"), house.listener.last(f"owsd/pi7/{name}/result")
+    answers("room", "hall", "owsd-writer is not there: systemctl enable --now owsd-writer@OWS.socket")
+    writer = Writer(scene, house.daemon.config, house.daemon.name)
+    house.arrives("room", lambda m: m["good"])
+    chip = house.last(f"chip/{SENSOR}/problem")
+    for name, text, words in (("room", "relay", "there is an item"), ("room", "a b", "blank"), ("nobody", "hall", "no such signal"),
+                              ("room", "", "it is empty")):
+        answers(name, text, words)
+    assert house.daemon.config.read_text() == old
+    answers("room", '{"v":"hall","id":7}', '"taken":true')
+    assert json.loads(house.listener.last(result)) == {"taken": True, "set": "hall", "id": 7}
+    assert house.daemon.config.read_text() == old.replace('"room"', '"hall"')
+    house.arrives("hall", lambda m: m["v"] == 21.5 and m["good"])
+    until(lambda: house.listener.last("owsd/pi7/room") == "", 30, "the old topic is emptied")
+    # the entity stays the same: its id is of what the signal is
+    entity = json.loads(house.listener.last("homeassistant/device/owsd_28_A0B1C2000001/config"))["cmps"]
+    assert [c["stat_t"] for c in entity.values() if c.get("uniq_id", "").endswith("temperature")] == ["owsd/pi7/hall"], entity
+    assert house.last(f"chip/{SENSOR}/problem") == chip
+    until(lambda: "rename by user" in writer.log() and "for mqtt:127.0.0.1" in writer.log(), 20, writer.log)
 
 
 def test_without_write_a_command_sets_nothing_and_the_log_says_why_and_what_to_do(scene):

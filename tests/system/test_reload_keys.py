@@ -297,6 +297,7 @@ def mqtt_keys(house):
     yield key("PrimaryHost", "scada", linked(lambda c: any("STATE/scada" in asked for asked in c["asked"])),
               Profile="sparkplug")
     yield key("Write", raw("on"), linked(lambda c: any(b'"cmd_t"' in body for body in c["topics"].values())))
+    yield key("Rename", raw("on"), linked(lambda c: any("+/rename" in asked for asked in c["asked"])))
 
 
 KEYS = {"Web": web_keys, "Mqtt": mqtt_keys, "Influx": influx_keys, "Recorder": recorder_keys}

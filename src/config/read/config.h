@@ -205,7 +205,7 @@ struct config_mqtt {
 	const char *node; /* NULL: the program's own */
 	const char *protocol, *topic, *profile, *discovery;
 	const char *primary_host, *link; /* NULL: none */
-	bool mqtt5, write, old_readers;
+	bool mqtt5, write, rename, old_readers;
 };
 
 /* The Modbus block, for owsd-modbus; with the defaults where the file has none. */

@@ -287,6 +287,8 @@ OPTION(MQTT_PRIMARY_HOST, "PrimaryHost", MQTT, TEXT, primary_host, .check = text
        .help = "host of Sparkplug without which nothing is published")
 OPTION(MQTT_WRITE, "Write", MQTT, FLAG, write, .preset = "off",
        .help = "take commands from the broker")
+OPTION(MQTT_RENAME, "Rename", MQTT, FLAG, rename, .preset = "off",
+       .help = "let who publishes at the broker rename signals")
 
 /* Of the Modbus block */
 OPTION(MODBUS_LISTEN, "Listen", MODBUS, TEXT, listen, .needed = "127.0.0.1:502",

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/faces/kit/look.h"
+#include "src/faces/mqtt/devices.h"
 #include "src/faces/mqtt/mqtt.h"
 #include "src/faces/mqtt/plain.h"
 #include "src/faces/mqtt/profiles.h"
@@ -59,6 +60,10 @@ static void on_connected(void *ctx)
 		         m->options.profile->asks);
 		client_subscribe(&m->broker, topic);
 	}
+	if (m->stream.profile->asks && m->options.rename) {
+		snprintf(topic, sizeof(topic), "%.300s/+/" TOPIC_RENAME, m->options.prefix);
+		client_subscribe(&m->broker, topic);
+	}
 	m->health_ns = m->sweep_ns = 0;
 	m->sweep = true;
 	stream_begin(&m->stream);
@@ -69,7 +74,8 @@ static bool asks(const char *topic)
 {
 	const char *last = strrchr(topic, '/');
 
-	return last && (!strcmp(last, "/set") || !strcmp(last, "/on") || !strcmp(last, "/get"));
+	return last && (!strcmp(last, "/set") || !strcmp(last, "/on") || !strcmp(last, "/get") ||
+	                !strcmp(last, "/" TOPIC_RENAME));
 }
 
 /*
@@ -122,8 +128,140 @@ static void on_command(struct mqtt *m, const char *name, const struct row *row,
 	answer(m, &json, message);
 }
 
+/* --- What others answer ---------------------------------------------------------------------- */
+
+static void answer_devices(struct mqtt *m, const struct ask *ask, char *listing, const char *why,
+                           const struct broker_message *message)
+{
+	struct json json;
+
+	stream_message(&m->stream, &json);
+	json_object(&json, NULL);
+	if (look_is_current(m->broker.face))
+		devices_json(&json, &m->stream, listing);
+	else
+		why = "owsd is away, or reloads: try again";
+	json_bool(&json, "searched", listing);
+	if (why)
+		json_string(&json, "why", why);
+	ask_id_json(&json, ask);
+	answer(m, &json, message);
+}
+
+static void answer_rename(struct mqtt *m, const struct ask *ask, const char *name, const char *why,
+                          const struct broker_message *message)
+{
+	struct json json;
+
+	if (why)
+		commands_refuse(&m->commands, name, why, ows_now());
+	else
+		log_notice(m->broker.face->log, "%s is called %.63s now", name, ask->value);
+	stream_message(&m->stream, &json);
+	json_object(&json, NULL);
+	ask_answer_json(&json, ask, why);
+	answer(m, &json, message);
+}
+
+/* What owsd-writer says against it; NULL: nothing. */
+static const char *fault_of_writer(char *text)
+{
+	bool done = text && !strncmp(text, "status: done\n", strlen("status: done\n"));
+	bool served = text && !strstr(text, "\nreload: refused\n");
+	char *why = text ? strstr(text, "\nproblem: E ") : NULL;
+	int skip = 0;
+
+	if (done && served)
+		return NULL;
+	/* of a text with errors the first one says more: "E 3 9 words" */
+	if (why && sscanf(why, "\nproblem: E %*d %*d %n", &skip) == 0 && skip) {
+		why += skip;
+	} else {
+		why = text ? strstr(text, "\nwhy: ") : NULL;
+		if (!why)
+			return "owsd-writer gave no answer: nobody knows whether the name was "
+			       "changed";
+		why += strlen("\nwhy: ");
+	}
+	why[strcspn(why, "\n")] = '\0';
+	return why;
+}
+
+static void on_answered(void *ctx)
+{
+	struct mqtt *m = ctx;
+	struct errand *e = &m->errand;
+	char *listing;
+
+	if (e->kind == ERRAND_RENAME) {
+		answer_rename(m, &e->ask, e->name, fault_of_writer(e->got), &e->message);
+	} else {
+		listing = e->got ? devices_listing(e->got, e->len) : NULL;
+		answer_devices(m, &e->ask, listing,
+		               listing ? NULL : "owsd gave no list of what is on its wires",
+		               &e->message);
+	}
+	errand_end(e, m->broker.face);
+}
+
+/* Why it could not begin. */
+static const char *errand_fault(int err, enum errand_kind kind)
+{
+	if (err == -EBUSY)
+		return "another one is under way: try again";
+	if (err == -EACCES || err == -EPERM)
+		return "the user owsd-mqtt has to be in the group owsd-config";
+	if (kind == ERRAND_RENAME)
+		return "owsd-writer is not there: systemctl enable --now owsd-writer@OWS.socket";
+	return "owsd gave no list of what is on its wires";
+}
+
+/* Which devices there are: those of the table at least, if owsd gives no list of all. */
+static void on_devices(struct mqtt *m, const struct broker_message *message)
+{
+	unsigned char request[DEVICES_REQUEST];
+	int len = devices_request(request);
+	int err = errand_begin(&m->errand, ERRAND_DEVICES, m->broker.face, "sock", request,
+	                       (size_t)len, TOPIC_CHIP, message);
+	struct ask ask;
+
+	if (!err)
+		return;
+	ask_read(&ask, message->text, message->len, false);
+	answer_devices(m, &ask, NULL, errand_fault(err, ERRAND_DEVICES), message);
+}
+
+/* Another name for a signal: the identity stays, and what hangs on it. */
+static void on_rename(struct mqtt *m, const char *name, const struct row *row,
+                      const struct broker_message *message)
+{
+	const char *host = m->options.ways[m->broker.way].host;
+	struct ask ask;
+	const char *wrong = ask_read(&ask, message->text, message->len, false);
+	const char *why = commands_fault(message);
+	char order[ASK_MOST + 512];
+	int len, err;
+
+	why = why ? why : wrong;
+	if (!why && (!row || !look_is_current(m->broker.face)))
+		why = row ? "owsd is away, or reloads: try again" : "there is no such signal";
+	len = snprintf(order, sizeof(order),
+	               "owsd-writer 1\ndo: rename\nfor: %s%.*s\nlength: %zu\n\n%s\n%s",
+	               *message->person ? "" : "mqtt:", BROKER_PERSON,
+	               *message->person ? message->person : host,
+	               strlen(name) + 1 + strlen(ask.value), name, ask.value);
+	if (!why) {
+		err = errand_begin(&m->errand, ERRAND_RENAME, m->broker.face, "config", order,
+		                   (size_t)len, name, message);
+		why = err ? errand_fault(err, ERRAND_RENAME) : NULL;
+	}
+	if (why)
+		answer_rename(m, &ask, name, why, message);
+}
+
 /* Somebody asks for a value: the newest one that owsd has. */
-static void on_question(struct mqtt *m, const struct row *row, const struct broker_message *message)
+static void on_question(struct mqtt *m, const char *name, const struct row *row,
+                        const struct broker_message *message)
 {
 	struct stream *s = &m->stream;
 	struct json json;
@@ -131,6 +269,10 @@ static void on_question(struct mqtt *m, const struct row *row, const struct brok
 
 	if (message->retained)
 		return;
+	if (!row && !strcmp(name, TOPIC_CHIP)) {
+		on_devices(m, message);
+		return;
+	}
 	ask_read(&ask, message->text, message->len, false);
 	stream_message(s, &json);
 	json_object(&json, NULL);
@@ -206,7 +348,9 @@ static void on_message(void *ctx, const struct broker_message *message)
 	if (ask == STREAM_SET)
 		on_command(m, name, row, message);
 	if (ask == STREAM_GET)
-		on_question(m, row, message);
+		on_question(m, name, row, message);
+	if (ask == STREAM_RENAME)
+		on_rename(m, name, row, message);
 	if (ask)
 		return;
 	snprintf(name, sizeof(name), "%s", message->topic);
@@ -225,5 +369,6 @@ static void on_message(void *ctx, const struct broker_message *message)
 const struct broker_ops arrivals_ops = {
 	.connected = on_connected,
 	.message = on_message,
+	.answered = on_answered,
 	.will = will,
 };

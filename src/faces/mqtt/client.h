@@ -39,6 +39,8 @@ struct broker_message {
 struct broker_ops {
 	void (*connected)(void *ctx);
 	void (*message)(void *ctx, const struct broker_message *message);
+	/* What a message has had another program asked is answered, or will not be */
+	void (*answered)(void *ctx);
 	/* Have the will put; ending: what is published at the end. False: it was not taken. */
 	bool (*will)(void *ctx, bool ending, const struct outlet *outlet);
 };

@@ -29,7 +29,7 @@ void commands_tell(struct commands *c, int64_t now_ns)
 	}
 }
 
-static void commands_refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
+void commands_refuse(struct commands *c, const char *name, const char *why, int64_t now_ns)
 {
 	uint64_t print = hash_text(HASH_BEGIN, why, strlen(why));
 	struct commands_cause *cause = &c->causes[print % COMMANDS_CAUSES];
@@ -121,8 +121,7 @@ static void forget_credits(struct commands *c)
 	c->credit_count = 0;
 }
 
-/* What is wrong with the message itself; NULL: nothing. */
-static const char *fault_of(const struct broker_message *message)
+const char *commands_fault(const struct broker_message *message)
 {
 	if (message->retained && message->len)
 		return "it is retained, so nobody knows of when it is: publish it without retain";
@@ -151,7 +150,7 @@ int commands_take(struct commands *c, const char *name, bool known, bool plain,
                   const struct broker_message *message, const char *place, int64_t now_ns)
 {
 	const char *wrong = ask_read(&c->ask, message->text, message->len, plain);
-	const char *fault = message->fault ? message->fault : fault_of(message);
+	const char *fault = message->fault ? message->fault : commands_fault(message);
 	char person[BROKER_PERSON], words[FACE_REFUSAL];
 	struct face_command command = {.program = c->program,
 	                               .instance = c->instance,

@@ -53,6 +53,10 @@ struct commands {
  */
 int commands_take(struct commands *c, const char *name, bool known, bool plain,
                   const struct broker_message *message, const char *place, int64_t now_ns);
+/* What is wrong with the message itself, as one that asks for a change; NULL: nothing. */
+const char *commands_fault(const struct broker_message *message);
+/* Count a refusal, and log it, unless there were many of its cause. */
+void commands_refuse(struct commands *c, const char *name, const char *why, int64_t now_ns);
 /* Log how many refusals had no line, for each cause whose span is over by now. */
 void commands_tell(struct commands *c, int64_t now_ns);
 /* The last refusal, for a minute: then it is nothing that is wrong now. "": none. */

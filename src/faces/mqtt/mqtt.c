@@ -348,6 +348,8 @@ static void go_on(struct face *face, int64_t now_ns)
 	face->tick_ns = broker_next(&m->broker);
 	if (past_next(&m->past) < face->tick_ns)
 		face->tick_ns = past_next(&m->past);
+	if (m->errand.kind && m->errand.until_ns < face->tick_ns)
+		face->tick_ns = m->errand.until_ns;
 	if (m->asked && announce_ns(m) > now_ns && announce_ns(m) < face->tick_ns)
 		face->tick_ns = announce_ns(m);
 	/* the next tick may be minutes away; to show each count at once would cost too much */
@@ -383,6 +385,7 @@ void mqtt_close(struct face *face)
 {
 	struct mqtt *m = mqtt_own(face);
 
+	errand_end(&m->errand, face);
 	mqtt_end(face);
 	stream_close(&m->stream);
 	mosquitto_lib_cleanup();
@@ -395,6 +398,8 @@ void mqtt_tick(struct face *face, int64_t now_ns)
 	look_at_clock(face, now_ns);
 	commands_tell(&m->commands, now_ns);
 	broker_tick(&m->broker, now_ns);
+	if (errand_late(&m->errand, now_ns))
+		m->broker.ops->answered(m);
 	go_on(face, now_ns);
 	show_status(face);
 }
@@ -437,6 +442,8 @@ void mqtt_event(struct face *face, const struct face_event *event)
 	case FACE_ENTRIES_LOST:
 		break;
 	case FACE_DESCRIPTOR:
+		if (errand_ready(&m->errand, event->fd))
+			m->broker.ops->answered(m);
 		broker_ready(&m->broker, event->fd, event->ready, now_ns);
 		break;
 	}

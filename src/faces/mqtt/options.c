@@ -84,6 +84,7 @@ void mqtt_options_take(struct mqtt_options *options, const struct face *face)
 	name_page(options, face->config);
 	options->mqtt5 = mqtt->mqtt5;
 	options->write = mqtt->write;
+	options->rename = mqtt->rename;
 	options->old_readers = mqtt->old_readers;
 }
 

@@ -25,7 +25,7 @@ struct mqtt_options {
 	char primary_host[64];  /* "": none */
 	char link[OPTION_SIZE]; /* of the page; "": not known */
 	const struct profile *profile;
-	bool mqtt5, write, old_readers;
+	bool mqtt5, write, rename, old_readers;
 };
 
 #define MQTT_WAY_NAME (OPTION_SIZE + 24)

@@ -113,9 +113,15 @@ bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality)
 	return true;
 }
 
-static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
+const char *plain_chip_word(const struct stream *s, const struct chip *chip)
 {
 	static const char *const words[] = {"offline", "unknown", "online"};
+
+	return words[state_of(s, chip)];
+}
+
+static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
+{
 	enum chip_state state;
 	struct chip *chip;
 
@@ -127,7 +133,7 @@ static bool publish_chip(struct stream *s, struct row *row, uint8_t quality)
 	state = state_of(s, chip);
 	if (chip->published && state == chip->state)
 		return true;
-	if (!stream_put_text(s, chip->topic, words[state], true))
+	if (!stream_put_text(s, chip->topic, plain_chip_word(s, chip), true))
 		return false;
 	chip->published = true;
 	chip->state = state;

@@ -22,6 +22,8 @@ bool plain_value(struct stream *s, struct row *row);
 /* The members of a value as it is now, without the object around them. */
 void plain_value_json(struct json *json, struct stream *s, struct row *row);
 bool plain_state(struct stream *s, enum stream_node node);
+/* "online", "offline", "unknown" */
+const char *plain_chip_word(const struct stream *s, const struct chip *chip);
 void plain_alarm(struct stream *s, const struct ows_alarm *alarm);
 
 /* What the profiles that are built on it have of it. */

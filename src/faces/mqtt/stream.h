@@ -178,7 +178,10 @@ struct profile {
 	const char *none; /* what is published last at the topic of a signal that is no more */
 	/* Below the prefix, with wildcards; the last level has none. NULL: listen_write, take */
 	const char *commands;
-	/* Likewise, where values are asked for; NULL: nowhere, and no command has an answer */
+	/*
+	 * Likewise, where values are asked for, and TOPIC_RENAME beside it; NULL: nowhere, and no
+	 * command has an answer
+	 */
 	const char *asks;
 	/* Where retained messages may stand, likewise; NULL at the end, or in its place: nowhere */
 	const char *const *below;
@@ -241,6 +244,7 @@ enum stream_ask {
 	STREAM_NO_ASK,
 	STREAM_SET, /* a command */
 	STREAM_GET, /* a question for the value */
+	STREAM_RENAME,
 };
 /* What is topic of? *row is whose, or NULL; name gets what to call it. */
 enum stream_ask stream_command(const struct stream *s, const char *topic, const struct row **row,

@@ -12,6 +12,7 @@
 #define TOPIC_HEALTH "health"
 #define TOPIC_CHIP "chip"
 #define TOPIC_RESULT "result"   /* beside commands */
+#define TOPIC_RENAME "rename"   /* likewise */
 #define TOPIC_PROBLEM "problem" /* below a chip */
 
 /* The level of a signal: '+', '#', '/' and '%' as %XX. name: at most 63 bytes. */

@@ -60,7 +60,7 @@ static void test_what_is_printed_is_what_was_read(void)
 	static const char keys[] =
 		"Mqtt { Broker \"mqtts://b:1\" User u PasswordFile \"pw\" CaFile \"/ca\" "
 		"CertFile \"/cert\" KeyFile \"key\" Protocol 3.1.1 Node pi7 Topic \"site/ows\" "
-		"Profile plain Discovery \"ha\" PrimaryHost scada Write on }";
+		"Profile plain Discovery \"ha\" PrimaryHost scada Write on Rename on }";
 	char *first, *second;
 	size_t len;
 
@@ -76,7 +76,7 @@ static void test_what_is_printed_is_what_was_read(void)
 		TEST_ASSERT_EQUAL_STRING("scada", config->mqtt.primary_host);
 		TEST_ASSERT_EQUAL_STRING("key", config->mqtt.key_file);
 		TEST_ASSERT_FALSE(config->mqtt.mqtt5);
-		TEST_ASSERT_TRUE(config->mqtt.write);
+		TEST_ASSERT_TRUE(config->mqtt.write && config->mqtt.rename);
 		config_free(config);
 		config = NULL;
 	}
