@@ -4,6 +4,7 @@
 #include <mosquitto.h>
 #include <netdb.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "src/faces/mqtt/advice.h"
@@ -119,6 +120,21 @@ const char *advice_remedy(int code, int err, const char *tls)
 	if (code == MOSQ_ERR_ERRNO && (err == ETIMEDOUT || err == EHOSTUNREACH))
 		return "look at its address and the network";
 	return "";
+}
+
+const char *advice_closed(size_t len, const char *topic, const char **remedy,
+                          char words[ADVICE_WORDS])
+{
+	*remedy = ADVICE_MAY_BE_LARGE;
+	snprintf(words, ADVICE_WORDS, "the broker closes it at the message of %.100s, %zu bytes",
+	         topic, len);
+	return words;
+}
+
+bool advice_refuses(int code)
+{
+	return code != MOSQ_ERR_ERRNO && code != MOSQ_ERR_EAI && code != MOSQ_ERR_CONN_LOST &&
+	       code != MOSQ_ERR_NO_CONN;
 }
 
 const char *advice_tls(const char *line)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* The broker does not speak this version of MQTT. */
 #define ADVICE_PROTOCOL 0x84
@@ -10,6 +11,9 @@
 #define ADVICE_TAKEN_OVER 0x8e
 /* Of a message that the broker does not take, and that was not sent */
 #define ADVICE_LARGE "it is too large; raise there max_packet_size"
+/* Of one that it has not taken when it closed the connection */
+#define ADVICE_MAY_BE_LARGE "is that too large? Raise there max_packet_size"
+#define ADVICE_WORDS 384
 
 /* The code of a CONNACK; old: of MQTT 3.1.1; as one of MQTT 5. */
 int advice_connack(int code, bool old);
@@ -25,5 +29,10 @@ const char *advice_remedy(int code, int err, const char *tls);
  * TLS.
  */
 const char *advice_hung_up(bool tls);
+/* What the broker has not taken when it closed the connection without a word. Returns words. */
+const char *advice_closed(size_t len, const char *topic, const char **remedy,
+                          char words[ADVICE_WORDS]);
+/* Is it an answer, of TLS or of MQTT, to who wants to connect? No network or name is none. */
+bool advice_refuses(int code);
 /* The part of a line of libmosquitto's log that a person can read. */
 const char *advice_tls(const char *line);

@@ -175,6 +175,8 @@ static void attempt(struct broker *b, int64_t now_ns)
 
 	b->state = BROKER_CONNECTING;
 	b->ended = b->tcp = b->held = false;
+	b->large = 0;
+	b->large_mid = 0;
 	b->drained = true;
 	b->tls_words[0] = '\0';
 	b->begun_ns = b->came_ns = now_ns;
@@ -197,13 +199,6 @@ static void attempt(struct broker *b, int64_t now_ns)
 	broker_watch(b);
 }
 
-/* Is it an answer, of TLS or of MQTT, to who wants to connect? No network or name is none. */
-static bool is_refusal(int code)
-{
-	return code != MOSQ_ERR_ERRNO && code != MOSQ_ERR_EAI && code != MOSQ_ERR_CONN_LOST &&
-	       code != MOSQ_ERR_NO_CONN;
-}
-
 static enum taken_end end_of(const struct broker *b, int code, int err)
 {
 	if (code == ADVICE_TAKEN_OVER)
@@ -215,9 +210,9 @@ static enum taken_end end_of(const struct broker *b, int code, int err)
 /* It is over, or libmosquitto reports that. */
 static void finish(struct broker *b, int code, int err, int64_t now_ns)
 {
-	char taken[BROKER_WORDS];
+	char said[BROKER_WORDS];
 	const char *words, *remedy;
-	bool soon;
+	bool soon, large;
 
 	if (b->ended)
 		code = b->end_code;
@@ -230,7 +225,9 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 		return;
 	}
 	soon = b->state == BROKER_CONNECTED && now_ns - b->begun_ns <= good_ns(b);
-	b->thrown_out = taken_end(&b->taken, end_of(b, code, err), now_ns - b->begun_ns);
+	large = client_too_large(b, code, err);
+	b->thrown_out = taken_end(&b->taken, large ? TAKEN_OTHER : end_of(b, code, err),
+	                          now_ns - b->begun_ns);
 	words = advice_words(code, err, b->tls_words);
 	remedy = advice_remedy(b->thrown_out && b->taken.contested ? ADVICE_TAKEN_OVER : code, err,
 	                       b->tls_words);
@@ -238,9 +235,11 @@ static void finish(struct broker *b, int code, int err, int64_t now_ns)
 	    (code == MOSQ_ERR_CONN_LOST || (code == MOSQ_ERR_ERRNO && err == ECONNRESET)))
 		remedy = advice_hung_up(b->options->ways[b->way].tls);
 	if (b->thrown_out)
-		words = taken_words(b, taken);
+		words = taken_words(b, said);
+	if (large)
+		words = advice_closed(b->large, b->large_topic, &remedy, said);
 	/* a connection that ends soon was thrown out, or its line is bad: both want time */
-	b->refused |= soon || (b->state != BROKER_CONNECTED && is_refusal(code));
+	b->refused |= soon || (b->state != BROKER_CONNECTED && advice_refuses(code));
 	broker_fail(b, words, remedy, now_ns);
 }
 
@@ -427,14 +426,15 @@ static bool drain(struct broker *b, int64_t until_ns)
 static bool publish(struct broker *b, const char *topic, const char *text, size_t len, int qos,
                     bool retain)
 {
-	int err;
+	int err, mid;
 
 	if (b->state != BROKER_CONNECTED || b->ended || b->in_flight >= BROKER_IN_FLIGHT)
 		return false;
 	b->in_flight++; /* of QoS 0 it may have gone when that returns */
-	err = mosquitto_publish_v5(b->client, NULL, topic, (int)len, text, qos, retain, NULL);
+	err = mosquitto_publish_v5(b->client, &mid, topic, (int)len, text, qos, retain, NULL);
 	if (!err) {
 		b->published++;
+		client_put(b, mid, topic, qos ? len : 0);
 		return true;
 	}
 	b->in_flight--;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Makes a client of libmosquitto, with its secrets, its will and what its callbacks note. */
+#include <errno.h>
 #include <mosquitto.h>
 #include <mqtt_protocol.h>
 #ifdef OWSD_OPENSSL
@@ -62,6 +63,22 @@ static void on_disconnect(struct mosquitto *client, void *ctx, int code,
 	b->ended = true;
 }
 
+void client_put(struct broker *b, int mid, const char *topic, size_t len)
+{
+	if (len <= b->large)
+		return;
+	b->large = len;
+	b->large_mid = mid;
+	snprintf(b->large_topic, sizeof(b->large_topic), "%s", topic);
+}
+
+bool client_too_large(const struct broker *b, int code, int err)
+{
+	return b->state == BROKER_CONNECTED && !client_mqtt5(b) && b->large_mid &&
+	       b->large > b->large_taken &&
+	       (code == MOSQ_ERR_CONN_LOST || (code == MOSQ_ERR_ERRNO && err == ECONNRESET));
+}
+
 static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
                        const mosquitto_property *properties)
 {
@@ -70,9 +87,13 @@ static void on_publish(struct mosquitto *client, void *ctx, int mid, int reason,
 	bool denied;
 
 	(void)client;
-	(void)mid;
 	(void)properties;
 	b->in_flight -= b->in_flight > 0;
+	if (mid == b->large_mid) {
+		b->large_mid = 0;
+		if (b->large > b->large_taken)
+			b->large_taken = b->large;
+	}
 	if (reason < 128) {
 		b->acknowledged++;
 		return;

@@ -7,10 +7,11 @@
 #include <stdint.h>
 
 #include "src/faces/kit/backoff.h"
+#include "src/faces/mqtt/advice.h"
 #include "src/faces/mqtt/options.h"
 #include "src/faces/mqtt/taken.h"
 
-#define BROKER_WORDS 384
+#define BROKER_WORDS ADVICE_WORDS
 #define BROKER_SESSION 20
 #define CLIENT_ID "owsd-%s"
 #define BROKER_IN_FLIGHT 100 /* messages that the broker has not taken yet, at most */
@@ -73,10 +74,14 @@ struct broker {
 	struct taken taken; /* whether another client takes our id */
 	bool thrown_out;    /* it took the last connection, or that looks so */
 	unsigned in_flight; /* put, and not taken by the broker */
-	bool marking;       /* the broker may answer the last mark yet */
-	bool marked;        /* it has */
-	int mark;           /* its number */
-	bool refused;       /* a way that was tried since the last pause answered, and refused */
+	size_t large;       /* of this connection the longest message, */
+	int large_mid;      /* its number, 0: taken, */
+	size_t large_taken; /* and the longest that was ever taken */
+	char large_topic[128];
+	bool marking; /* the broker may answer the last mark yet */
+	bool marked;  /* it has */
+	int mark;     /* its number */
+	bool refused; /* a way that was tried since the last pause answered, and refused */
 	struct backoff backoff;
 	int64_t begun_ns, next_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
@@ -103,6 +108,13 @@ bool client_make(struct broker *b, char *why, size_t size);
  * comes is read.
  */
 void client_explain(struct broker *b);
+/* A message is under way, by that number. */
+void client_put(struct broker *b, int mid, const char *topic, size_t len);
+/*
+ * By MQTT 3.1.1 a broker has no word for a packet that is too large: it closes the connection. Does
+ * the end look so? The longest message was not taken, and none that long ever was.
+ */
+bool client_too_large(const struct broker *b, int code, int err);
 /* What was to be published there is not, by an error of libmosquitto. */
 void client_refuse(struct broker *b, const char *topic, int err);
 /* MQTT 5, else 3.1.1. */

@@ -48,6 +48,17 @@ static void test_each_reason_has_its_words_and_remedy(void)
 	TEST_ASSERT_EQUAL_STRING("", advice_remedy(0x93, 0, ""));
 }
 
+static void test_a_broker_that_closes_has_not_taken_the_longest_message(void)
+{
+	char words[ADVICE_WORDS];
+	const char *remedy;
+
+	TEST_ASSERT_EQUAL_STRING("the broker closes it at the message of owsd/pi7/a, 1000 bytes",
+	                         advice_closed(1000, "owsd/pi7/a", &remedy, words));
+	/* broker_fail() has room for so much of a remedy */
+	TEST_ASSERT_LESS_THAN(50, (int)strlen(remedy));
+}
+
 static void test_what_tls_reported_goes_before_what_the_library_calls_it(void)
 {
 	TEST_ASSERT_EQUAL_STRING("certificate verify failed",
@@ -146,6 +157,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_refusal_of_mqtt_3_is_the_same_as_that_of_mqtt_5);
 	RUN_TEST(test_each_reason_has_its_words_and_remedy);
+	RUN_TEST(test_a_broker_that_closes_has_not_taken_the_longest_message);
 	RUN_TEST(test_what_tls_reported_goes_before_what_the_library_calls_it);
 	RUN_TEST(test_a_name_that_is_not_found_is_told_from_an_address_that_is_refused);
 	RUN_TEST(test_what_tls_reported_leads_to_its_remedy);
