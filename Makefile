@@ -659,6 +659,7 @@ install: all
 	    install -m 644 docs/examples/$$h/* $$d; done
 	install -m 644 $(PYTHON) $(D)$(DATADIR)
 	install -m 644 $(wildcard board/boards/*.board) $(D)$(DATADIR)/boards
+	install -m 644 board/faces $(D)$(DATADIR)
 	@set -e; day=$$(sh board/make-deb --day); dd=$$(LC_ALL=C date -u -d "$$day" '+%B %-d, %Y'); \
 	for m in $(MAN); do d=$(D)$(MANDIR)/man$${m##*.}; install -d $$d; install -m 644 $$m $$d; \
 	    sed -e "s/^\(\.TH [^ ]* [0-9]\) \"\"/\1 \"$$day\"/" -e "s/^\.Dd.*/.Dd $$dd/" $$m >$$d/$${m##*/}; done
@@ -710,8 +711,7 @@ install-service:
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
 	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
-	@echo '     and for the history: systemctl enable --now owsd-recorder; for a database: owsd-influx; for a broker: owsd-mqtt; for mails of alarms: owsd-notify'
-	@echo '     and for the page: systemctl enable --now owsd-web@OWS.socket'
+	@echo '     and for the page: owsctl enable web; likewise history, mqtt, influx, notify. owsctl doctor says what is wrong'
 
 uninstall-service:
 	rm -f $(addprefix $(SERVICE_IN)/,$(SERVICE))

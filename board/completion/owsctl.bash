@@ -23,6 +23,8 @@ _owsctl() {
 		[[ $cur != -* || -n $verb ]] || words='-n -t --json --help --version'
 	elif [[ $cur = -* ]]; then
 		words=$(owsctl help "$verb" 2>/dev/null | grep -o -e '--\?[a-zA-Z]\+' | sort -u)
+	elif [[ $verb = enable || $verb = disable ]]; then
+		words=$(owsctl enable --dry-run '' 2>&1 | sed -n 's/.*there are: //p')
 	elif [[ $verb = config ]]; then
 		case $((COMP_CWORD - at)) in
 		1)

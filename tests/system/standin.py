@@ -86,6 +86,8 @@ def with_sim(program, arguments):
 
 def owsctl(arguments):
     words = [place(a) for a in arguments]
+    if "enable" in words:  # for root, of the machine: is there such a program?
+        run([BUILD / "owsctl", "disable", "--dry-run", *words[words.index("enable") + 1:]])
     if "-n" in words:
         words[words.index("-n") + 1] = NAME
     elif not {"-t", "config", "--help", "-h", "--version", "-V"} & set(words[:3]) or \

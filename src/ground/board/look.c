@@ -202,7 +202,7 @@ static void look_for_rivals(const struct scene *scene, unsigned number)
 	rivals_find(proc, path, who, sizeof(who));
 	if (!who[0])
 		return;
-	report_add(scene->report, BOARD_NOTE,
+	report_add(scene->report, BOARD_RIVAL,
 	           "i2c-%u is open in %s: two programs on one DS2482 disturb each other", number,
 	           who);
 	report_remedy(scene->report,
@@ -261,6 +261,18 @@ static void look_at_adapters(const struct scene *scene)
 	miss_module(scene, I2C_DEV_ROOT "/i2c-*");
 }
 
+/* The line may have parameters, as gpiopin=17. */
+static void advise_master(const struct scene *scene)
+{
+	const char *line = scene->board->wire_line, *config = board_config(scene->root);
+	bool there = board_configured(scene->root, line);
+
+	snprintf(scene->report->master, sizeof(scene->report->master),
+	         there ? "sudo reboot    # %.80s is in %s; if it was started since: dmesg"
+	               : "echo %.80s | sudo tee -a %s && sudo reboot",
+	         line, config);
+}
+
 static void report_masters(const struct scene *scene)
 {
 	char path[BOARD_PATH], names[160] = "";
@@ -281,6 +293,8 @@ static void report_masters(const struct scene *scene)
 	if (names[0])
 		report_add(scene->report, BOARD_FACT, "the kernel's 1-Wire masters:%s (target w1)",
 		           names);
+	else if (scene->board && scene->board->wire_line[0])
+		advise_master(scene);
 }
 
 /* Find the base board and the HAT; the data of a named board decide which of both it is. */

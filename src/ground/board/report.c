@@ -63,8 +63,8 @@ void board_print(const struct board_report *report, FILE *out)
 
 		fprintf(out, "%s%s\n",
 		        line->kind == BOARD_MISSING ? "missing: "
-		        : line->kind == BOARD_NOTE  ? "note: "
-		                                    : "",
+		        : line->kind == BOARD_FACT  ? ""
+		                                    : "note: ",
 		        line->text);
 		if (line->remedy[0])
 			fprintf(out, "    %s\n", line->remedy);

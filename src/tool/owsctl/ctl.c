@@ -107,6 +107,9 @@ static const struct option *longs_of(const char *options)
 		{"csv", no_argument, NULL, 'C'},
 		{"influx", no_argument, NULL, 'I'},
 		{"directory", required_argument, NULL, 'd'},
+		{"dry-run", no_argument, NULL, 'D'},
+		{"fix", no_argument, NULL, 'F'},
+		{"root", required_argument, NULL, 'O'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;

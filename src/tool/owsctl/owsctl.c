@@ -82,6 +82,17 @@ static const struct verb verbs[] = {
 	{"metrics", "[-p] [PATTERN...]", "values, quality, targets and counters as OpenMetrics",
          verb_metrics, .options = "  -p  the older text format of Prometheus\n",
          .example = "metrics -p", .finds = true},
+	{"doctor", "[--fix] [--root DIR]", "what is wrong on this machine, and what mends it",
+         verb_doctor,
+         .options = "  --fix       run the commands that are safe, as root, and look again\n"
+                    "  --root DIR  look at the files of a machine that was recorded there\n",
+         .example = "doctor"},
+	{"enable", "[--dry-run] web|mqtt|history|...", "switch a program beside owsd on",
+         verb_enable, .options = "  --dry-run  print the commands alone\n",
+         .example = "enable web"},
+	{"disable", "[--dry-run] web|mqtt|history|...", "switch a program beside owsd off",
+         verb_disable, .options = "  --dry-run  print the commands alone\n",
+         .example = "disable web"},
 	{"instances", "", "list the owsd that run here, and those that have run", verb_instances,
          .example = "instances"},
 	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove,
@@ -164,6 +175,7 @@ static const struct {
 	{"plot", "trend"}, {"graph", "trend"}, {"export", "trend"}, {"ack", "alarms ack"},
 	{"shelve", "alarms shelve"}, {"unshelve", "alarms unshelve"}, {"ps", "instances"},
 	{"rm", "remove"}, {"edit", "config"}, {"rename", "config"}, {"add", "config"},
+	{"check", "doctor"}, {"diagnose", "doctor"}, {"start", "enable"}, {"stop", "disable"},
 	{"devices", "scan"}, {"search", "scan"}, {"find", "scan"}, {"tree", "dir"},
 };
 /* clang-format on */

@@ -24,3 +24,6 @@ int verb_dir(struct ctl *ctl, int argc, char **argv);
 int verb_read(struct ctl *ctl, int argc, char **argv);
 int verb_write(struct ctl *ctl, int argc, char **argv);
 int verb_scan(struct ctl *ctl, int argc, char **argv);
+int verb_doctor(struct ctl *ctl, int argc, char **argv);
+int verb_enable(struct ctl *ctl, int argc, char **argv);
+int verb_disable(struct ctl *ctl, int argc, char **argv);

@@ -326,7 +326,7 @@ static void test_another_program_on_the_adapter_is_a_note(void)
 	TEST_ASSERT_EQUAL(0, symlink("/dev/null", at));
 	look();
 	TEST_ASSERT_FALSE(report.missing);
-	expect(BOARD_NOTE, "i2c-1 is open in owserver, process 109",
+	expect(BOARD_RIVAL, "i2c-1 is open in owserver, process 109",
 	       "sudo systemctl disable --now owserver.socket");
 }
 

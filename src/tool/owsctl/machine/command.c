@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+/* Runs commands of the system, and waits for their end. */
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/machine/command.h"
+
+extern char **environ;
+
+/* out: where its stdout goes, and stderr nowhere; -1: both stay. */
+static int spawn(const char *const words[], int out, pid_t *pid)
+{
+	posix_spawn_file_actions_t actions;
+	posix_spawnattr_t attributes;
+	sigset_t usual;
+	int err;
+
+	sigemptyset(&usual);
+	sigaddset(&usual, SIGPIPE);
+	sigaddset(&usual, SIGXFSZ);
+	posix_spawn_file_actions_init(&actions);
+	if (out >= 0) {
+		posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
+		posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+	}
+	posix_spawnattr_init(&attributes);
+	posix_spawnattr_setsigdefault(&attributes, &usual);
+	posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+	err = posix_spawnp(pid, words[0], &actions, &attributes, (char *const *)(uintptr_t)words,
+	                   environ);
+	posix_spawnattr_destroy(&attributes);
+	posix_spawn_file_actions_destroy(&actions);
+	return -err;
+}
+
+static bool ended_well(pid_t pid)
+{
+	int status = 0;
+
+	while (waitpid(pid, &status, 0) < 0 && errno == EINTR)
+		;
+	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+bool command_output(const char *const words[], char *text, size_t size)
+{
+	size_t len = 0;
+	ssize_t n = 1;
+	int ends[2], err;
+	pid_t pid;
+
+	text[0] = '\0';
+	if (pipe2(ends, O_CLOEXEC))
+		return false;
+	err = spawn(words, ends[1], &pid);
+	close(ends[1]);
+	/* a command that has more to say than there is room for fails */
+	while (!err && n > 0 && len < size - 1) {
+		n = read(ends[0], text + len, size - 1 - len);
+		len += n > 0 ? (size_t)n : 0;
+	}
+	close(ends[0]);
+	text[len] = '\0';
+	if (!err && ended_well(pid))
+		return true;
+	text[0] = '\0';
+	return false;
+}
+
+int command_run(const char *const words[], bool dry)
+{
+	pid_t pid;
+	int err;
+
+	putchar('+');
+	for (unsigned i = 0; words[i]; i++)
+		printf(" %s", words[i]);
+	putchar('\n');
+	if (dry)
+		return 0;
+	fflush(stdout);
+	err = spawn(words, -1, &pid);
+	if (err)
+		ctl_fail("%s: %s", words[0], strerror(-err));
+	else if (ended_well(pid))
+		return 0;
+	else
+		ctl_fail("%s has failed", words[0]);
+	return -EIO;
+}
+
+int command_line(const char *line, size_t len)
+{
+	const char *words[COMMAND_WORDS + 1] = {0};
+	char copy[512], *rest = copy, *word;
+	unsigned n = 0;
+
+	snprintf(copy, sizeof(copy), "%.*s", (int)len, line);
+	while (n < COMMAND_WORDS && (word = strsep(&rest, " ")))
+		if (*word)
+			words[n++] = word;
+	return n ? command_run(words, false) : -EINVAL;
+}

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * owsctl enable and disable: switches a program beside owsd on and off, with the groups that its
+ * block of the configuration asks for.
+ */
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "src/config/read/load.h"
+#include "src/config/read/report.h"
+#include "src/memory/shm/segment.h"
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/machine/command.h"
+#include "src/tool/owsctl/machine/faces.h"
+#include "src/tool/owsctl/running.h"
+#include "src/tool/owsctl/verbs.h"
+
+struct change {
+	const struct ctl *ctl;
+	const struct face_row *row;
+	struct config *config;
+	bool dry;
+	int err; /* of the first command that failed: no other is run after it */
+	char socket[FACE_UNIT], service[FACE_UNIT];
+};
+
+/* A command of at most five words. */
+static void run(struct change *change, const char *a, const char *b, const char *c, const char *d,
+                const char *e)
+{
+	const char *const words[] = {a, b, c, d, e, NULL};
+
+	if (!change->err)
+		change->err = command_run(words, change->dry);
+}
+
+/* The groups that its keys ask for, and who does for it what it may not do itself. */
+static void give_rights(struct change *change)
+{
+	const char *program = change->row->program;
+	char unit[FACE_UNIT];
+
+	for (unsigned i = 0; i < FACE_RIGHTS; i++) {
+		const struct face_right *right = &face_rights[i];
+
+		if (!face_has(change->config, program, right->key))
+			continue;
+		run(change, "usermod", "-aG", right->group, program, NULL);
+		if (!right->helper)
+			continue;
+		snprintf(unit, sizeof(unit), "%s@%.200s.socket", right->helper,
+		         change->ctl->instance);
+		run(change, "systemctl", "enable", "--now", unit, NULL);
+	}
+}
+
+static void switch_on(struct change *change)
+{
+	/* systemd knows no address of the file, so the program itself has to run for them */
+	bool serves = !change->row->socket ||
+	              face_has(change->config, change->row->program, "Listen");
+
+	give_rights(change);
+	if (change->row->socket)
+		run(change, "systemctl", "enable", "--now", change->socket, NULL);
+	if (serves)
+		run(change, "systemctl", "enable", change->service, NULL, NULL);
+	/* a process has the groups of its start */
+	run(change, "systemctl", serves ? "restart" : "try-restart", change->service, NULL, NULL);
+}
+
+static void say_where(const struct change *change)
+{
+	const char *program = change->row->program, *instance = change->ctl->instance;
+	char addresses[400];
+
+	if (!face_has_block(change->config, program))
+		printf("%s has no block for %s: %s(8) says what it may have\n",
+		       change->config->file, program, program);
+	if (strcmp(program, "owsd-web") != 0)
+		return;
+	face_addresses(change->config, addresses, sizeof(addresses));
+	printf("page: %s%s/run/owsd/%s.web\n", addresses, *addresses ? " " : "", instance);
+	if (!*addresses)
+		printf("      for a browser without a proxy: Web { Listen \"127.0.0.1:8080\" } in %s, "
+		       "and again: sudo owsctl enable web\n",
+		       change->config->file);
+}
+
+static int no_face(const struct ctl *ctl, const char *word, const struct face_row *rows, int count)
+{
+	char names[256] = "";
+	size_t used = 0;
+
+	for (int i = 0; i < count && used < sizeof(names); i++)
+		used += (size_t)snprintf(names + used, sizeof(names) - used, " %s",
+		                         rows[i].program + strlen("owsd-"));
+	return ctl_usage(ctl, "there is no %s; there are:%s", ctl_word(word), names);
+}
+
+static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
+{
+	static struct face_row rows[FACE_ROWS];
+	char file[INSTANCE_FIELD];
+	struct config_report report = {.line = ctl_report};
+	struct change change = {.ctl = ctl};
+	int count = faces_table(rows), c;
+
+	while ((c = ctl_option(ctl, argc, argv, "D")) != -1)
+		change.dry = true;
+	if (count < 0)
+		return ctl_fail("the table of the programs beside owsd: %s", strerror(-count));
+	if (optind != argc - 1)
+		return ctl_usage(ctl, "%s which one?", ctl->verb->name);
+	change.row = faces_find(rows, count, argv[optind]);
+	if (!change.row)
+		return no_face(ctl, argv[optind], rows, count);
+	if (!segment_name_ok(ctl->instance))
+		return ctl_fail("%s cannot be the name of an instance", ctl_word(ctl->instance));
+	face_unit(change.row, ctl->instance, "socket", change.socket);
+	face_unit(change.row, ctl->instance, "service", change.service);
+	if (!change.dry && geteuid() != 0)
+		return ctl_fail("that is for root: sudo owsctl %s %s", ctl->verb->name,
+		                argv[optind]);
+	if (!change.dry && !face_is_installed("", change.row))
+		return ctl_fail("%s is not installed: sudo apt install %s", change.row->program,
+		                change.row->package);
+	if (!on) {
+		run(&change, "systemctl", "disable", "--now", change.service,
+		    change.row->socket ? change.socket : NULL);
+		return change.err ? CTL_FAILED : CTL_DONE;
+	}
+	instance_config(ctl->instance, file);
+	/* a program does not start with a file that it refuses; the reason is printed */
+	if (config_load(file, &report, &change.config))
+		return CTL_FAILED;
+	switch_on(&change);
+	if (!change.err)
+		say_where(&change);
+	config_free(change.config);
+	return change.err ? CTL_FAILED : CTL_DONE;
+}
+
+int verb_enable(struct ctl *ctl, int argc, char **argv)
+{
+	return change_faces(ctl, argc, argv, true);
+}
+
+int verb_disable(struct ctl *ctl, int argc, char **argv)
+{
+	return change_faces(ctl, argc, argv, false);
+}

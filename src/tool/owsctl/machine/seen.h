@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/* What the checks of owsctl doctor share: the machine that they look at, and what they found. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "src/ground/board/report.h"
+#include "src/public/ows.h"
+#include "src/tool/owsctl/machine/faces.h"
+#include "src/tool/owsctl/running.h"
+
+/* A unit, as `systemctl list-units` has it. */
+struct unit {
+	char id[FACE_UNIT], active[16], sub[24];
+};
+
+#define UNITS (2 * FACE_ROWS + 1)
+#define DOCTOR_TEXT 16384
+#define DOCTOR_ROOT 150 /* the longest root: run/owsd in it is the directory of instances */
+
+struct doctor {
+	const char *root; /* "": this machine; else where the files of a recorded one are */
+	const char *instance;
+	struct board_report found; /* a remedy is a command of a shell, or what to look at */
+	const char *check[BOARD_LINES];
+	char file[INSTANCE_FIELD]; /* the configuration */
+	struct config *config;     /* NULL: it is wrong, or there is none */
+	unsigned errors;
+	struct face_row face[FACE_ROWS];
+	int faces;
+	struct unit unit[UNITS];
+	unsigned units; /* 0: no systemd runs here, or none of the instance */
+	struct ows *ows;
+	int err; /* why ows is NULL */
+	int64_t now_ns;
+	bool alive;
+	struct board_report board;
+	char text[DOCTOR_TEXT]; /* what a command printed last */
+};
+
+/* The output of a command, in d->text; of a recorded machine its file recorded/NAME. */
+bool seen_output(struct doctor *d, const char *name, const char *const words[]);
+/* Is the user a member of the group, by etc/group? */
+bool seen_in_group(const struct doctor *d, const char *user, const char *group);

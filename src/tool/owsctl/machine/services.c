@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: MIT */
+/* owsctl doctor: the services, owsd itself, and the programs beside it. */
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "hal/base/time.h"
+#include "src/config/read/config.h"
+#include "src/faces/show/faces.h"
+#include "src/faces/show/stats.h"
+#include "src/faces/show/when.h"
+#include "src/tool/owsctl/machine/seen.h"
+#include "src/tool/owsctl/machine/services.h"
+#include "src/tool/owsctl/machine/units.h"
+
+/* The last line that the unit's own process has logged; "" where this user may not read it. */
+static const char *last_words(struct doctor *d, const struct unit *unit)
+{
+	char match[FACE_UNIT + 20], name[FACE_UNIT + 10];
+	const char *const words[] = {"journalctl", "-q", "-n", "1", "-o", "cat", match, NULL};
+
+	snprintf(match, sizeof(match), "_SYSTEMD_UNIT=%s", unit->id);
+	snprintf(name, sizeof(name), "journal-%s", unit->id);
+	seen_output(d, name, words);
+	d->text[strcspn(d->text, "\n")] = '\0';
+	return d->text;
+}
+
+static void report_failure(struct doctor *d, const struct unit *unit)
+{
+	const char *words = last_words(d, unit);
+
+	report_add(&d->found, BOARD_MISSING, "%s fails (%s)", unit->id, unit->sub);
+	/* programs say in their last line what is wrong, and what to do */
+	if (*words)
+		report_remedy(&d->found, "%s", words);
+	else
+		report_remedy(&d->found, "sudo journalctl -u %s -n 20", unit->id);
+}
+
+void check_services(struct doctor *d)
+{
+	for (unsigned i = 0; i < d->units; i++) {
+		const struct unit *unit = &d->unit[i];
+		bool own = !strncmp(unit->id, "owsd@", 5);
+
+		if (!strcmp(unit->active, "failed") || !strcmp(unit->sub, "auto-restart")) {
+			/* all of them refuse a wrong file, which is reported already */
+			if (!d->errors)
+				report_failure(d, unit);
+		} else if (!strcmp(unit->active, "inactive") && unit_is_enabled(d, unit->id)) {
+			report_add(&d->found, BOARD_MISSING, "%s is enabled, and does not run",
+			           unit->id);
+			report_remedy(&d->found, "sudo systemctl start %s", unit->id);
+		} else if (own && !unit_is_enabled(d, unit->id)) {
+			bool runs = unit_is_active(unit);
+
+			report_add(&d->found, runs ? BOARD_NOTE : BOARD_MISSING, "%s %s", unit->id,
+			           runs ? "does not start with the machine" : "is not switched on");
+			report_remedy(&d->found, "sudo systemctl enable --now %s", unit->id);
+		}
+	}
+}
+
+/* --- owsd ------------------------------------------------------------------------------------ */
+
+/* Two owsd of one name, of two users: each user's programs talk to another one. */
+static void check_twins(struct doctor *d)
+{
+	char paths[DIRS][DIR_PATH];
+	int dirs = dir_list(paths), pid[DIRS] = {0};
+	unsigned up = 0;
+
+	for (int i = 0; i < dirs; i++) {
+		struct shm_dir dir;
+
+		if (dir_open(paths[i], &dir))
+			continue;
+		up += instance_runs(&dir, d->instance, &pid[i]);
+		dir_close(&dir);
+	}
+	if (up < 2)
+		return;
+	report_add(&d->found, BOARD_MISSING,
+	           "two owsd of the name %s run: in %s (process %d) and in %s (%d)", d->instance,
+	           paths[0], pid[0], paths[1], pid[1]);
+	report_remedy(&d->found, "kill %d    # or start it with another name, as -n TEST", pid[0]);
+}
+
+static void check_refused(struct doctor *d)
+{
+	struct ows_log_line refused;
+	char span[WHEN_TEXT];
+
+	/* with errors in the file the remedy is above */
+	if (d->errors || ows_refused_reload(d->ows, &refused))
+		return;
+	report_add(&d->found, BOARD_MISSING,
+	           "owsd goes on with what it loaded before: a reload was refused %s ago: %s",
+	           when_span(d->now_ns - refused.time_ns, span), refused.text);
+	report_remedy(&d->found, "sudo owsctl -n %s reload", d->instance);
+}
+
+void check_owsd(struct doctor *d)
+{
+	struct ows_daemon daemon = {0};
+	const struct unit *unit = units_owsd(d);
+
+	if (d->alive) {
+		check_twins(d);
+		check_refused(d);
+		ows_daemon(d->ows, d->now_ns, &daemon);
+		report_add(&d->found, BOARD_FACT, "owsd %s: process %d, %d signal%s, %d not good",
+		           d->instance, (int)daemon.pid, ows_count(d->ows),
+		           ows_count(d->ows) == 1 ? "" : "s", stats_not_good(d->ows, d->now_ns));
+		return;
+	}
+	/* a service that does not run is reported; of one of another machine there is no process */
+	if (d->err == -EACCES || (unit && (*d->root || !unit_is_active(unit))))
+		return;
+	if (d->err && d->err != -ENOENT)
+		report_add(&d->found, BOARD_MISSING, "the shared memory of %s cannot be read: %s",
+		           d->instance, strerror(-d->err));
+	else
+		report_add(&d->found, BOARD_MISSING, "owsd %s does not run", d->instance);
+	if (unit)
+		report_remedy(&d->found, "sudo systemctl restart owsd@%s", d->instance);
+	else
+		report_remedy(&d->found, "owsd -n %s -c %s    # or install its service",
+		              d->instance, d->file);
+}
+
+/* --- The programs beside it ------------------------------------------------------------------ */
+
+/* Was the file written after the program read it? A minute is time for what writes it. */
+static bool is_older(const struct doctor *d, const struct faces_one *face)
+{
+	struct when now = when_now();
+	struct stat st;
+
+	return !*d->root && face->loaded_ns && !stat(d->file, &st) &&
+	       now.boot - (now.wall - st.st_mtim.tv_sec * NS_PER_S) >
+	               face->loaded_ns + 60 * NS_PER_S;
+}
+
+static void check_report(struct doctor *d, const struct faces_one *face)
+{
+	char span[WHEN_TEXT];
+
+	report_add(&d->found, BOARD_FACT, "%s: %s", face->program, face->status);
+	if (!*d->root && faces_silent(face, d->now_ns)) {
+		/* a program that has ended may have left its report */
+		if (face->pid <= 0 || (kill((pid_t)face->pid, 0) && errno == ESRCH))
+			return;
+		report_add(&d->found, BOARD_MISSING, "%s has been silent for %s", face->program,
+		           when_span(d->now_ns - face->beat_ns, span));
+		report_remedy(&d->found, "sudo systemctl restart %s@%s", face->program,
+		              d->instance);
+	} else if (*face->refused && !d->errors) {
+		report_add(&d->found, BOARD_MISSING, "%s refuses its file: %s", face->program,
+		           face->refused);
+		report_remedy(&d->found, "correct %s, then: sudo systemctl reload %s@%s", d->file,
+		              face->program, d->instance);
+	} else if (*face->trouble && !face->since_ns) {
+		report_add(&d->found, BOARD_MISSING, "%s: %s", face->program, face->status);
+		report_remedy(&d->found, "%s", face->trouble);
+	} else if (is_older(d, face) && !d->errors) {
+		report_add(&d->found, BOARD_MISSING,
+		           "%s has not read the file since it was changed", face->program);
+		report_remedy(&d->found, "sudo systemctl reload %s@%s", face->program, d->instance);
+	}
+}
+
+/* Does a face have what its block asks for? `owsctl enable` gives it. */
+static void check_face(struct doctor *d, const struct face_row *row)
+{
+	const char *word = row->program + strlen("owsd-");
+	bool there = face_is_installed(d->root, row);
+	char id[FACE_UNIT];
+
+	face_unit(row, d->instance, row->socket ? "socket" : "service", id);
+	if (!there || !(unit_is_active(units_find(d, id)) || unit_is_enabled(d, id))) {
+		if (!face_has_block(d->config, row->program))
+			return;
+		report_add(&d->found, BOARD_NOTE, "%s has a block for %s, which is %s", d->file,
+		           row->program, there ? "not switched on" : "not installed");
+		if (there)
+			report_remedy(&d->found, "sudo owsctl -n %s enable %s", d->instance, word);
+		else
+			report_remedy(&d->found, "sudo apt install %s", row->package);
+		return;
+	}
+	for (unsigned i = 0; i < FACE_RIGHTS; i++) {
+		const struct face_right *right = &face_rights[i];
+
+		if (!face_has(d->config, row->program, right->key) ||
+		    seen_in_group(d, row->program, right->group))
+			continue;
+		report_add(&d->found, BOARD_MISSING,
+		           "%s is on for %s, which is not in the group %s", right->key,
+		           row->program, right->group);
+		report_remedy(&d->found, "sudo owsctl -n %s enable %s", d->instance, word);
+	}
+}
+
+void check_faces(struct doctor *d)
+{
+	struct faces_one faces[FACES_MOST];
+	unsigned count = faces_read(d->instance, faces);
+	char id[FACE_UNIT], addresses[400];
+
+	for (unsigned i = 0; i < count; i++)
+		check_report(d, &faces[i]);
+	for (int i = 0; d->config && d->units && i < d->faces; i++)
+		check_face(d, &d->face[i]);
+	snprintf(id, sizeof(id), "owsd-web@%s.socket", d->instance);
+	if (!d->config || !unit_is_active(units_find(d, id)))
+		return;
+	face_addresses(d->config, addresses, sizeof(addresses));
+	report_add(&d->found, BOARD_FACT, "page: %s%s/run/owsd/%s.web", addresses,
+	           *addresses ? " " : "", d->instance);
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* Asks systemd for the units of an instance. */
+#include <stdio.h>
+#include <string.h>
+
+#include "src/tool/owsctl/machine/seen.h"
+#include "src/tool/owsctl/machine/units.h"
+
+void units_load(struct doctor *d)
+{
+	char pattern[FACE_UNIT], *rest = d->text, *line;
+	const char *const words[] = {"systemctl",   "list-units", "--all", "--plain",
+	                             "--no-legend", pattern,      NULL};
+
+	d->units = 0;
+	snprintf(pattern, sizeof(pattern), "owsd*@%s.*", d->instance);
+	if (!seen_output(d, "systemctl", words))
+		return;
+	while (d->units < UNITS && (line = strsep(&rest, "\n"))) {
+		struct unit *unit = &d->unit[d->units];
+		char load[16];
+
+		if (sscanf(line, "%319s %15s %15s %23s", unit->id, load, unit->active, unit->sub) ==
+		    4)
+			d->units += !strcmp(load, "loaded");
+	}
+}
+
+const struct unit *units_find(const struct doctor *d, const char *id)
+{
+	for (unsigned i = 0; i < d->units; i++)
+		if (!strcmp(d->unit[i].id, id))
+			return &d->unit[i];
+	return NULL;
+}
+
+const struct unit *units_owsd(const struct doctor *d)
+{
+	char id[FACE_UNIT];
+
+	snprintf(id, sizeof(id), "owsd@%s.service", d->instance);
+	return units_find(d, id);
+}
+
+bool unit_is_active(const struct unit *unit)
+{
+	return unit && !strcmp(unit->active, "active");
+}
+
+/* A link makes it start with the machine. */
+bool unit_is_enabled(const struct doctor *d, const char *id)
+{
+	char pattern[FACE_UNIT + DOCTOR_ROOT + 40];
+
+	snprintf(pattern, sizeof(pattern), "%s/etc/systemd/system/*.wants/%s", d->root, id);
+	return faces_file(pattern);
+}

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* The units of an instance, as systemd has them. */
+#pragma once
+
+#include <stdbool.h>
+
+struct doctor;
+struct unit;
+
+/* Find out which there are, and how they do. */
+void units_load(struct doctor *d);
+/* NULL: there is none of that name. */
+const struct unit *units_find(const struct doctor *d, const char *id);
+/* That of the instance's owsd. */
+const struct unit *units_owsd(const struct doctor *d);
+/* NULL is not. */
+bool unit_is_active(const struct unit *unit);
+/* Does it start with the machine? */
+bool unit_is_enabled(const struct doctor *d, const char *id);

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""owsctl doctor and enable beside real programs: faults on purpose, and what is run to mend them."""
+
+import json
+import os
+import stat
+
+import owsdtest
+from owsdtest import raw
+
+BUSES = "i2c speed 100 combine one-read\nchip DS2482-100 0x18\n"
+CHIPS = ("DS18B20 28.A10000000000 as living temperature 21\n"
+         "DS18S20 10.0000000000C1 as cellar temperature 12.5\n"
+         "DS2408 29.000000000001 as relays\n")
+LIVING = dict(Name="living", Path="/28.A10000000000/temperature", Type=raw("double"), IO=raw("input"))
+CELLAR = dict(Name="cellar", Path="/10.0000000000C1/temperature", Type=raw("double"), IO=raw("input"))
+
+os.environ["OWSD_BOARDS"] = str(owsdtest.SOURCE / "board" / "boards")
+
+
+def house(scene, what, *items):
+    """A simulated house to which this happens from the start on."""
+    plant = scene.file("plant.sim", BUSES + CHIPS + what)
+    return scene.owsd(owsdtest.rio(f"sim:{plant}", list(items) or [LIVING, CELLAR], Period=0.05,
+                                   MaxRetries=0))
+
+
+def first_lines(scene, daemon, wanted):
+    """What it says first, as soon as that begins so."""
+    said = ""
+
+    def look():
+        nonlocal said
+        said = scene.owsctl(daemon, "doctor").stdout
+        return said.startswith("1. " + wanted)
+    try:
+        scene.until(look, 40, wanted)
+    except AssertionError as err:
+        raise AssertionError(f"{wanted}: {said}") from err
+    return said
+
+
+def test_a_house_that_is_well_has_nothing_to_do(scene):
+    daemon = house(scene, "")
+    scene.until(lambda: scene.get(daemon, "cellar") == "12.5", 30, "the temperature arrives")
+    done = scene.owsctl(daemon, "doctor")
+    assert done.returncode == 0 and done.stdout.startswith("nothing is to be done\n"), done
+    assert f"owsd {daemon.name}: process" in done.stdout and "2 signals, 0 not good" in done.stdout
+
+
+def test_the_first_line_is_the_remedy_of_what_is_wrong_on_the_wire(scene):
+    for what, wanted, text in (
+            ("at 0s unplug living for 10h", "does owsctl scan list the id?", "living: device absent"),
+            ("at 0s corrupt cellar for 10h", "look for a bad contact", "cellar: device error: wrong"),
+            ("at 0s short 0x18 for 10h", "data is held at ground: unplug branches", ": wire short")):
+        daemon = house(scene, what)
+        said = first_lines(scene, daemon, wanted)
+        assert text in said, said
+        daemon.stop()
+
+
+def test_a_path_that_is_wrong_is_the_first_line(scene):
+    typo = dict(LIVING, Name="typo", Path="/28.A10000000000/temprature")
+    kind = dict(LIVING, Name="kind", Path="/28.A10000000000/type")
+    for item, wanted in ((typo, "check its spelling"), (kind, "choose another Type")):
+        daemon = house(scene, "", item)
+        first_lines(scene, daemon, wanted)
+        daemon.stop()
+
+
+def test_an_owserver_that_is_away_is_the_first_line(scene):
+    port = owsdtest.free_port()
+    daemon = scene.owsd(owsdtest.rio(f"localhost:{port}", [LIVING]))
+    said = first_lines(scene, daemon, f"127.0.0.1:{port}: Connection refused; does an owserver run")
+    assert f"target localhost:{port} is down" in said
+    found = json.loads(scene.owsctl(daemon, "--json", "doctor").stdout)
+    assert found[0]["kind"] == "todo" and found[0]["check"] == "targets" and not found[0]["safe"]
+
+
+def test_a_refused_reload_is_the_first_line_until_it_is_taken(scene):
+    daemon = house(scene, "")
+    scene.until(lambda: scene.get(daemon, "cellar") == "12.5", 30, "the temperature arrives")
+    good = daemon.config.read_text()
+    daemon.config.write_text(good.replace("double", "doubel"))
+    assert scene.owsctl(daemon, "reload").returncode == 1
+    said = first_lines(scene, daemon, "correct line ")
+    assert "doubel" in said
+    daemon.config.write_text(good)
+    said = first_lines(scene, daemon, f"sudo owsctl -n {daemon.name} reload")
+    assert "a reload was refused" in said
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    assert scene.owsctl(daemon, "doctor").returncode == 0
+
+
+def test_an_owsd_that_has_ended_is_the_first_line(scene):
+    daemon = house(scene, "")
+    daemon.stop()
+    assert f"owsd {daemon.name} does not run" in scene.owsctl(daemon, "doctor").stdout
+
+
+def stand_ins(scene, *programs):
+    """Programs of the system that only write down what they are asked."""
+    folder = scene.path / "bin"
+    folder.mkdir()
+    for program in programs:
+        file = folder / program
+        file.write_text(f'#!/bin/sh\necho {program} "$@" >>{scene.path}/asked\n')
+        file.chmod(file.stat().st_mode | stat.S_IXUSR)
+    os.environ["PATH"] = f"{folder}:{os.environ['PATH']}"
+    return scene.path / "asked"
+
+
+def test_enable_shows_each_command_and_the_address_of_the_page(scene):
+    asked = stand_ins(scene, "systemctl", "usermod")
+    plant = scene.file("plant.sim", BUSES + CHIPS)
+    name = scene.name()
+    text = owsdtest.rio(f"sim:{plant}", [LIVING])
+    web = '  Web { Listen "127.0.0.1:8099" Write on Configure on }\n'
+    daemon = scene.owsd(text.replace("  Item", web + "  Item", 1), name=name)
+    done = scene.owsctl(daemon, "enable", "--dry-run", "web")
+    assert done.returncode == 0, done
+    assert done.stdout.splitlines() == [
+        "+ usermod -aG owsd-control owsd-web",
+        "+ usermod -aG owsd-config owsd-web",
+        f"+ systemctl enable --now owsd-writer@{name}.socket",
+        f"+ systemctl enable --now owsd-web@{name}.socket",
+        f"+ systemctl enable owsd-web@{name}.service",
+        f"+ systemctl restart owsd-web@{name}.service",
+        f"page: http://127.0.0.1:8099/ /run/owsd/{name}.web"], done.stdout
+    done = scene.owsctl(daemon, "enable", "--dry-run", "history")
+    assert done.stdout.splitlines()[:2] == [f"+ systemctl enable owsd-recorder@{name}.service",
+                                            f"+ systemctl restart owsd-recorder@{name}.service"]
+    done = scene.owsctl(daemon, "disable", "--dry-run", "web")
+    assert done.stdout == (f"+ systemctl disable --now owsd-web@{name}.service "
+                           f"owsd-web@{name}.socket\n"), done.stdout
+    assert not asked.exists()
+
+
+def test_a_page_without_an_address_says_how_to_give_it_one(scene):
+    daemon = house(scene, "")
+    said = scene.owsctl(daemon, "enable", "--dry-run", "web").stdout
+    assert f"+ systemctl try-restart owsd-web@{daemon.name}.service" in said
+    assert f"page: /run/owsd/{daemon.name}.web" in said and 'Listen "127.0.0.1:8080"' in said
+
+
+if __name__ == "__main__":
+    owsdtest.main()

@@ -1,0 +1,295 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * owsctl doctor on recorded machines, each a file of tests/unit/data/machines: "first", what its
+ * first line has to be, with ROOT for the folder; then files, "@ PATH" and their text. And what it
+ * makes of signals; and the table of faces.
+ */
+#include <errno.h>
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "src/config/read/config.h"
+#include "src/config/read/load.h"
+#include "src/tool/owsctl/machine/command.h"
+#include "src/tool/owsctl/machine/doctor.h"
+#include "src/tool/owsctl/machine/faces.h"
+#include "src/tool/owsctl/verbs.h"
+#include "tests/unit/aid/caught.h"
+#include "tests/unit/aid/folder.h"
+#include "tests/unit/aid/instance.h"
+
+#define MACHINES "tests/unit/data/machines/*.machine"
+
+static char root[32];
+
+void setUp(void)
+{
+	setenv("OWSD_BOARDS", "board/boards", 1);
+	strcpy(root, "/tmp/doctor-XXXXXX");
+	TEST_ASSERT_NOT_NULL(mkdtemp(root));
+	TEST_ASSERT_EQUAL(0, chmod(root, 0755));
+	caught_begin("OWS");
+}
+
+void tearDown(void)
+{
+	char command[64];
+
+	caught_end();
+	snprintf(command, sizeof(command), "rm -rf '%s'", root);
+	TEST_ASSERT_EQUAL(0, system(command));
+}
+
+static FILE *make_file(const char *name)
+{
+	char path[560];
+	FILE *file;
+
+	snprintf(path, sizeof(path), "%s/%s", root, name);
+	for (char *slash = path + strlen(root) + 1; (slash = strchr(slash, '/')); slash++) {
+		*slash = '\0';
+		mkdir(path, 0755);
+		*slash = '/';
+	}
+	file = fopen(path, "we");
+	TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+	return file;
+}
+
+/* The text with the folder in place of ROOT. */
+static void put_root(const char *text, char *to, size_t size)
+{
+	const char *at = strstr(text, "ROOT");
+
+	if (at)
+		snprintf(to, size, "%.*s%s%s", (int)(at - text), text, root, at + strlen("ROOT"));
+	else
+		snprintf(to, size, "%s", text);
+}
+
+/* Make its files; its expected first line goes to first. */
+static void unpack(const char *machine, char *first, size_t size)
+{
+	char line[512];
+	FILE *in = fopen(machine, "re"), *out_file = NULL;
+
+	TEST_ASSERT_NOT_NULL_MESSAGE(in, machine);
+	*first = '\0';
+	while (fgets(line, sizeof(line), in)) {
+		bool names = !strncmp(line, "@ ", 2);
+
+		if (names || !strncmp(line, "first ", 6))
+			line[strcspn(line, "\n")] = '\0';
+		if (names && out_file)
+			fclose(out_file);
+		if (names)
+			out_file = make_file(line + 2);
+		else if (out_file)
+			fputs(line, out_file);
+		else
+			put_root(line + strlen("first "), first, size);
+	}
+	if (out_file)
+		fclose(out_file);
+	fclose(in);
+}
+
+static void doctor_at_root(const char *more)
+{
+	char words[80];
+
+	snprintf(words, sizeof(words), "doctor --root %s%s", root, more);
+	unsetenv("OWS_DIR");
+	run(verb_doctor, words);
+	setenv("OWS_DIR", folder_dir()->path, 1);
+}
+
+static void test_the_first_line_is_the_remedy_of_each_recorded_machine(void)
+{
+	char first[600];
+	glob_t found;
+
+	TEST_ASSERT_EQUAL(0, glob(MACHINES, 0, NULL, &found));
+	TEST_ASSERT_GREATER_THAN(15, found.gl_pathc);
+	for (size_t i = 0; i < found.gl_pathc; i++) {
+		unpack(found.gl_pathv[i], first, sizeof(first));
+		doctor_at_root("");
+		out[strcspn(out, "\n")] = '\0';
+		TEST_ASSERT_EQUAL_STRING_MESSAGE(first, out, found.gl_pathv[i]);
+		tearDown();
+		setUp();
+	}
+	globfree(&found);
+}
+
+static void test_json_has_the_same_with_what_is_safe(void)
+{
+	char first[600];
+
+	unpack("tests/unit/data/machines/no-module.machine", first, sizeof(first));
+	doctor_at_root(" --json");
+	holds(out, "[{\"kind\":\"todo\",\"check\":\"board\",\"text\":\"there is no /dev/i2c-1");
+	holds(out, "\"safe\":true}");
+	holds(out,
+	      "{\"kind\":\"fact\",\"check\":\"board\",\"text\":\"board: Raspberry Pi 4 Model B");
+}
+
+static void test_a_wrong_file_is_reported_once_and_not_by_each_service(void)
+{
+	char first[600];
+
+	unpack("tests/unit/data/machines/wrong-file.machine", first, sizeof(first));
+	doctor_at_root("");
+	holds(out, "OWS.rio:3:");
+	TEST_ASSERT_NULL_MESSAGE(strstr(out, "fails"), out);
+	TEST_ASSERT_NULL_MESSAGE(strstr(out, "\n2. "), out);
+}
+
+static void test_only_commands_that_change_no_plant_are_safe(void)
+{
+	static const char *const yes[] = {
+		"sudo modprobe i2c-dev    # at each start: echo i2c-dev | sudo tee /etc/x.conf",
+		"sudo systemd-sysusers    # then: sudo systemctl restart 'owsd@*'",
+		"sudo systemctl start owsd-mqtt@OWS.service",
+	};
+	static const char *const no[] = {
+		"",
+		"sudo systemctl start owsd@OWS.service",
+		"sudo systemctl enable --now owsd-mqtt@OWS.service",
+		"sudo systemctl start owsd-mqtt@OWS.service; reboot",
+		"sudo systemctl start owsd-$(reboot)@OWS.service",
+		"sudo reboot",
+		"echo dtoverlay=w1-gpio | sudo tee -a /boot/firmware/config.txt && sudo reboot",
+	};
+
+	for (size_t i = 0; i < sizeof(yes) / sizeof(yes[0]); i++)
+		TEST_ASSERT_TRUE_MESSAGE(doctor_is_safe(yes[i]), yes[i]);
+	for (size_t i = 0; i < sizeof(no) / sizeof(no[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(doctor_is_safe(no[i]), no[i]);
+}
+
+static void test_a_command_is_run_without_a_shell(void)
+{
+	static const char *const says[] = {"echo", "$HOME", NULL}, *const fails[] = {"false", NULL},
+				 *const absent[] = {"/nowhere/program", NULL};
+	char text[64], small[4];
+
+	TEST_ASSERT_TRUE(command_output(says, text, sizeof(text)));
+	TEST_ASSERT_EQUAL_STRING("$HOME\n", text);
+	TEST_ASSERT_FALSE(command_output(fails, text, sizeof(text)));
+	TEST_ASSERT_FALSE(command_output(absent, text, sizeof(text)));
+	command_output(says, small, sizeof(small));
+	TEST_ASSERT_LESS_THAN_size_t(sizeof(small), strlen(small));
+	TEST_ASSERT_EQUAL(0, command_line("true beyond", 4));
+	TEST_ASSERT_NOT_EQUAL(0, command_line("", 0));
+}
+
+static void put_bad(struct instance *in, uint32_t record, uint8_t quality, int error)
+{
+	struct ows_sample sample = {
+		.quality = quality, .err = error, .tried_ns = ows_now(), .target = 1, .count = 1};
+	struct ows_attrs attrs = {.flags = OWS_ATTR_READ_ENABLE};
+
+	image_publish(&in->image, record, &sample, &attrs, NULL);
+}
+
+static void test_signals_with_the_same_fault_are_one_finding_and_a_short_is_the_first(void)
+{
+	static const struct instance_signal signals[] = {
+		{"attic", "/28.1/temperature", OWS_DOUBLE, false, 0},
+		{"cellar", "/28.2/temperature", OWS_DOUBLE, false, 0},
+		{"hall", "/28.3/temperature", OWS_DOUBLE, false, 0},
+		{"room", "/28.4/temperature", OWS_DOUBLE, false, 0},
+		{"yard", "/28.5/temperature", OWS_DOUBLE, false, 0},
+		{"unset", "/29.1/PIO.0", OWS_BOOL, true, 0},
+	};
+	struct instance in;
+
+	instance_start(&in, "doctor", signals, 6);
+	for (uint32_t i = 1; i <= 4; i++)
+		put_bad(&in, i, OWS_Q_NO_DEVICE, -ENODEV);
+	put_bad(&in, 5, OWS_Q_SHORT, -ECOMM);
+	put_bad(&in, 6, OWS_Q_INITIAL, 0);
+	caught_begin(in.name);
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_doctor, "doctor"));
+	holds(out, ". data is held at ground: unplug branches until the wire lives again\n"
+	           "   yard: wire short: the wire is short\n");
+	holds(out, "   attic, cellar, hall and 1 more: device absent: no such device there\n");
+	TEST_ASSERT_TRUE(strstr(out, "yard") < strstr(out, "attic"));
+	TEST_ASSERT_NULL_MESSAGE(strstr(out, "unset"), out);
+	instance_end(&in);
+}
+
+static void test_words_that_cannot_be_are_refused(void)
+{
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_doctor, "doctor now"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_doctor, "doctor --fix --root /"));
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_doctor, "doctor --root /nowhere"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_enable, "enable"));
+	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_enable, "enable teapot"));
+	holds(err, "there is no teapot; there are:");
+	holds(err, " mqtt");
+	caught_ctl.instance = "a/b";
+	TEST_ASSERT_EQUAL(CTL_FAILED, run(verb_disable, "disable web"));
+	holds(err, "a/b cannot be the name of an instance");
+}
+
+static void test_the_table_of_faces_says_what_starts_each(void)
+{
+	struct face_row rows[FACE_ROWS];
+	int count = faces_table(rows);
+	const struct face_row *web = faces_find(rows, count, "web"),
+			      *history = faces_find(rows, count, "history");
+	char unit[FACE_UNIT];
+
+	TEST_ASSERT_NOT_NULL(web);
+	TEST_ASSERT_NOT_NULL(history);
+	TEST_ASSERT_TRUE(web->socket);
+	TEST_ASSERT_FALSE(history->socket);
+	TEST_ASSERT_EQUAL_STRING("owsd-recorder", history->package);
+	TEST_ASSERT_EQUAL_PTR(web, faces_find(rows, count, "owsd-web"));
+	TEST_ASSERT_EQUAL_STRING("owsd-web@OWS.socket", face_unit(web, "OWS", "socket", unit));
+}
+
+static void test_a_face_has_what_its_block_asks_for(void)
+{
+	static const char text[] = "OwsDrv { Web { Listen \"127.0.0.1:8080\" Write on }\n"
+				   "Mqtt { Broker \"mqtt://h\" } }";
+	struct config_report report = {0};
+	struct config *config;
+	char addresses[200];
+
+	TEST_ASSERT_EQUAL(0, config_parse("x", text, strlen(text), &report, &config));
+	TEST_ASSERT_TRUE(face_has_block(config, "owsd-mqtt"));
+	TEST_ASSERT_FALSE(face_has_block(config, "owsd-influx"));
+	TEST_ASSERT_FALSE(face_has_block(config, "owsd-writer"));
+	TEST_ASSERT_TRUE(face_has(config, "owsd-web", "Write"));
+	TEST_ASSERT_FALSE(face_has(config, "owsd-web", "Configure"));
+	TEST_ASSERT_FALSE(face_has(config, "owsd-mqtt", "Write"));
+	TEST_ASSERT_FALSE(face_has(config, "owsd-recorder", "Write"));
+	face_addresses(config, addresses, sizeof(addresses));
+	TEST_ASSERT_EQUAL_STRING("http://127.0.0.1:8080/", addresses);
+	config_free(config);
+}
+
+int main(void)
+{
+	folder_dir();
+	UNITY_BEGIN();
+	RUN_TEST(test_the_first_line_is_the_remedy_of_each_recorded_machine);
+	RUN_TEST(test_json_has_the_same_with_what_is_safe);
+	RUN_TEST(test_a_wrong_file_is_reported_once_and_not_by_each_service);
+	RUN_TEST(test_only_commands_that_change_no_plant_are_safe);
+	RUN_TEST(test_a_command_is_run_without_a_shell);
+	RUN_TEST(test_signals_with_the_same_fault_are_one_finding_and_a_short_is_the_first);
+	RUN_TEST(test_words_that_cannot_be_are_refused);
+	RUN_TEST(test_the_table_of_faces_says_what_starts_each);
+	RUN_TEST(test_a_face_has_what_its_block_asks_for);
+	return UNITY_END();
+}
