@@ -26,7 +26,7 @@ EXTERN = re.compile(r"^extern [^;(]*?\b(\w+)(?:\[[^\]]*\])*;|^extern [^;]*?\(\*(
 NAME = re.compile(r"(?<![\w.])(?<!->)(?<!struct )(?<!enum )(?<!union )[A-Za-z_]\w*")
 
 
-ROOMS_IN_ROOMS = {"hal/sim/chips", "hal/sim/serial"}
+ROOMS_IN_ROOMS = {"hal/sim/chips", "hal/sim/serial", "hal/sim/usb"}
 
 
 def unit_of(path):
