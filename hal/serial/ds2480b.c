@@ -256,7 +256,7 @@ static int ds2480b_slot(struct link *base, bool out, enum link_after after)
 }
 
 /* Two bits for each of an id: the direction or what was taken, and below it the conflict. */
-static int ds2480b_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
+static int ds2480b_path(struct link *base, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
 {
 	struct serial_master *master = serial_of(base);
 	struct stream stream = {.out_n = 0};
@@ -265,6 +265,7 @@ static int ds2480b_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
 
 	if (master->lost)
 		return -EIO;
+	put_data(master, &stream, command);
 	put_command(master, &stream, SEARCH_ON, false);
 	for (unsigned i = 0; i < 16; i++) {
 		uint8_t four = rom[i / 2] >> i % 2 * 4 & 0x0F, byte = 0;
@@ -278,7 +279,9 @@ static int ds2480b_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
 
 	if (err)
 		return err;
-	master->cost.wire_ns += UINT64_C(192) * SLOT_NS;
+	master->cost.wire_ns += UINT64_C(200) * SLOT_NS;
+	if (stream.in[stream.in_n - 17] != command)
+		return lose(master, -EIO);
 	memcpy(answer, stream.in + stream.in_n - 16, 16);
 	memset(rom, 0, 8);
 	memset(conflict, 0, 8);

@@ -143,11 +143,12 @@ static void set_bit(uint8_t bits[8], unsigned i, bool on)
 }
 
 /* The direction goes out with the two slots of the next bit: one exchange for each bit of an id. */
-static int passive_path(struct link *base, uint8_t rom[8], uint8_t conflict[8])
+static int passive_path(struct link *base, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
 {
 	struct serial_master *master = serial_of(base);
 	uint8_t line[3] = {ONE, ONE, ONE}, back[3] = {ONE};
-	int err = master->lost ? -EIO : 0;
+	const struct link_part part = {.out = &command, .out_n = 1};
+	int err = passive_run(base, &part);
 
 	for (unsigned i = 0; !err && i <= 64; i++) {
 		unsigned first = i == 0, n = i == 0 ? 2 : i == 64 ? 1 : 3;

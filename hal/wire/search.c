@@ -33,9 +33,11 @@ static int triplet(struct link *link, bool direction)
 	return err < 0 ? err : id | complement << 1 | taken << 2;
 }
 
+/* The command too, unless it goes out with the path. */
 static int begin_search(struct link *link, uint8_t command)
 {
-	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+	const struct link_part part = {
+		.reset = true, .out = &command, .out_n = link->ops->path ? 0 : 1};
 	int err = link->ops->run(link, &part);
 
 	return err == -EHOSTDOWN ? 0 : err ? err : 1;
@@ -69,13 +71,13 @@ struct pass {
 };
 
 /* rom: the directions. As link_ops.path. */
-static int make_pass(struct link *link, const uint8_t rom[8], struct pass *pass)
+static int make_pass(struct link *link, uint8_t command, const uint8_t rom[8], struct pass *pass)
 {
 	pass->made = link->ops->path;
 	if (!pass->made)
 		return 0;
 	memcpy(pass->rom, rom, sizeof(pass->rom));
-	return link->ops->path(link_wire(link), pass->rom, pass->conflict);
+	return link->ops->path(link_wire(link), command, pass->rom, pass->conflict);
 }
 
 static int next_bits(struct link *link, const struct pass *pass, unsigned position, bool direction)
@@ -99,7 +101,7 @@ int search_next(struct search *search, struct link *link)
 	if (present > 0) {
 		for (unsigned position = 1; position <= 64; position++)
 			set_rom_bit(directions, position, direction_at(search, position));
-		int err = make_pass(link, directions, &pass);
+		int err = make_pass(link, search->command, directions, &pass);
 
 		if (err && err != -EHOSTDOWN)
 			return err;
@@ -181,7 +183,7 @@ static int follow(struct link *link, uint8_t command, const uint8_t *const roms[
 	struct pass pass;
 
 	if (present > 0) {
-		int err = make_pass(link, roms[0], &pass);
+		int err = make_pass(link, command, roms[0], &pass);
 
 		present = err == -EHOSTDOWN ? 0 : err ? err : 1;
 		if (pass.made)

@@ -190,11 +190,10 @@ static void test_a_search_for_one_id_says_whether_it_is_there_and_leaves_it_sele
 
 static void test_a_path_that_breaks_off_turns_the_accelerator_off_and_is_an_error(void)
 {
-	uint8_t command = ONEWIRE_SEARCH, rom[8] = {0}, conflict[8];
-	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+	uint8_t rom[8] = {0}, conflict[8];
 
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
-	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
 	for (unsigned i = 0; i < 4; i++) {
 		const struct sim_event pull = {.what = SIM_PLUG,
 		                               .slave = serial.net.chip[0].wire[0].slaves[i],
@@ -202,7 +201,8 @@ static void test_a_path_that_breaks_off_turns_the_accelerator_off_and_is_an_erro
 
 		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&serial.net, &pull));
 	}
-	TEST_ASSERT_EQUAL_INT(-EBADMSG, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EBADMSG,
+	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
 	TEST_ASSERT_FALSE(serial.sim.search);
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
 }
