@@ -159,6 +159,15 @@ CPP_COMMON += -DOWSD_LIBGPIOD=$(LIBGPIOD) $(LIBGPIOD_CFLAGS)
 LIBS     += $(LIBGPIOD_LIBS)
 endif
 
+# USB adapters, where libusb is there for this compiler; LIBUSB=0 leaves it out
+LIBUSB   ?= $(shell printf '\043include <stdint.h>\n\043include <libusb-1.0/libusb.h>\nint main(void) { return libusb_wrap_sys_device(0, 0, 0); }\n' | \
+              $(CC) -Werror=implicit-function-declaration $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lusb-1.0 2>/dev/null && echo 1)
+LIBUSB   := $(LIBUSB)
+ifeq ($(LIBUSB),1)
+CPP_COMMON += -DOWSD_LIBUSB
+LIBS     += -lusb-1.0
+endif
+
 # owsd-recorder and libows-history, where SQLite is there for this compiler; LIBSQLITE3=0 leaves it out
 LIBSQLITE3 ?= $(shell printf '\043include <stdint.h>\n\043include <sqlite3.h>\nint main(void) { return !sqlite3_libversion_number(); }\n' | \
               $(CC) $(CPPFLAGS) $(CFLAGS) $(EXTRA_CFLAGS) $(LDFLAGS) -x c -o /dev/null - -lsqlite3 2>/dev/null && echo 1)
@@ -209,7 +218,7 @@ version_of = $(shell $(1) --version 2>/dev/null | head -n 1)
 with_cc  := $(CC): $(call version_of,$(CC)): $(ALL_CFLAGS)
 with_cxx := $(CXX): $(call version_of,$(CXX)): $(ALL_CXXFLAGS)
 with_ld  := $(CC): $(ALL_LDFLAGS) $(LIBS)
-with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
+with_libraries := libi2c $(if $(filter 1,$(LIBI2C)),yes,no) libusb $(if $(filter 1,$(LIBUSB)),yes,no) libgpiod $(or $(filter 1 2,$(LIBGPIOD)),no) \
     libsqlite3 $(if $(SQLITE),yes,no owsd-recorder left-out) libcurl $(if $(CURL),yes,no owsd-influx left-out owsd-notify left-out) \
     libmicrohttpd $(if $(HTTPD),yes,no owsd-web left-out) libmosquitto $(if $(MOSQUITTO),yes,no owsd-mqtt left-out) \
     dygraphs $(if $(DYGRAPHS),yes,no plots left-out) libprotobuf-c $(if $(PROTOBUFC),yes,no) openssl $(if $(OPENSSL),yes,no)

@@ -68,9 +68,7 @@ static const struct {
 	const char *words[7];
 	const char *remedy;
 } others[] = {
-	{{"usb", "ds9490", "ds9490r", "ds2490"},
-         "is a USB adapter: take target w1, which has a DS9490R by the kernel's ds2490, or an "
-         "owserver"},
+	{{"usb", "ds9490", "ds9490r", "ds2490"}, "is a USB adapter: write usb:"},
 	{{"link", "linkusb", "ds9097u", "ds2480b"},
          "is a serial adapter: write serial:/dev/ttyUSB0"},
 	{{"passive", "ds9097"}, "is a passive serial adapter: write uart:/dev/ttyUSB0"},

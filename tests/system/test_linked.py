@@ -15,8 +15,9 @@ from owsdtest import BUILD, SOURCE, skip
 
 UNIT = sorted((SOURCE / "tests/unit").glob("*/test_*.c"))
 SUMMARY = re.compile(r"^(\d+) Tests (\d+) Failures (\d+) Ignored", re.M)
-# libi2c and libgpiod as the linker knows them, and what we call in them
-LIBRARIES = {"libi2c": ("libi2c.so.", "i2c_smbus_"), "libgpiod": ("libgpiod.so.", "gpiod_")}
+# These libraries as the linker knows them, and what we call in them
+LIBRARIES = {"libi2c": ("libi2c.so.", "i2c_smbus_"), "libgpiod": ("libgpiod.so.", "gpiod_"),
+             "libusb": ("libusb-1.0.so.", "libusb_")}
 
 
 def output(*command):
@@ -48,7 +49,7 @@ def test_the_programs_have_no_line_of_the_simulator_but_those_that_are_named_so(
             assert not simulator & defined(program), (program, sorted(simulator & defined(program)))
 
 
-def test_the_programs_link_libi2c_and_libgpiod(scene):
+def test_the_programs_link_the_libraries_of_adapters(scene):
     said = found()
     for name, (soname, prefix) in LIBRARIES.items():
         for program in (owsdtest.OWSD, owsdtest.OWSCTL):
@@ -139,13 +140,15 @@ def test_the_tables_of_the_chip_families_stand_in_read_only_memory(scene):
 
 def test_the_makefile_found_what_is_installed(scene):
     said = found()
-    for name, header in (("libi2c", "i2c/smbus.h"), ("libgpiod", "gpiod.h"), ("libmicrohttpd", "microhttpd.h")):
+    for name, header in (("libi2c", "i2c/smbus.h"), ("libgpiod", "gpiod.h"),
+                         ("libusb", "libusb-1.0/libusb.h"), ("libmicrohttpd", "microhttpd.h")):
         if os.path.exists(f"/usr/include/{header}"):
             assert said[name] != "no", f"{header} is here; was {name.upper()}=0 given?"
     version = owsdtest.OWSD
     told = subprocess.run([version, "-V"], capture_output=True, text=True,
                           timeout=owsdtest.PATIENCE).stdout
     assert ("with libi2c" in told) == (said["libi2c"] != "no"), told
+    assert ("with libusb" in told) == (said["libusb"] != "no"), told
     generation = re.search(r"with libgpiod (\d)", told)
     assert (generation.group(1) if generation else "no") == said["libgpiod"], told
 

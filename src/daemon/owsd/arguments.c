@@ -88,6 +88,11 @@ static void version(void)
 #else
 	printf("without libi2c: no target i2c\n");
 #endif
+#ifdef OWSD_LIBUSB
+	printf("with libusb\n");
+#else
+	printf("without libusb: no target usb\n");
+#endif
 	if (gpio_library)
 		printf("with libgpiod %s\n", gpio_library->version());
 	else

@@ -118,7 +118,8 @@ static void test_a_host_named_like_a_scheme_is_said_in_full(void)
 
 static void test_an_unknown_scheme_is_refused_with_the_names_there_are(void)
 {
-	is_refused("pci:/dev/x", -EPROTONOSUPPORT, "owserver: i2c: w1: serial: uart: gpio: sim:");
+	is_refused("pci:/dev/x", -EPROTONOSUPPORT,
+	           "owserver: i2c: w1: serial: uart: usb: gpio: sim:");
 	is_refused("pci:", -EPROTONOSUPPORT, "'pci'");
 	is_refused("foo:bar:baz", -EPROTONOSUPPORT, "'foo'");
 }
@@ -126,17 +127,15 @@ static void test_an_unknown_scheme_is_refused_with_the_names_there_are(void)
 /* The words of OWFS, which the DNS would be asked for else. */
 static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void)
 {
-	static const char *const usb[] = {"usb", "USB", "usb:all", "DS9490R", "ds2490"};
+	static const char *const usb[] = {"USB", "DS9490", "DS9490R", "ds2490"};
 	static const char *const serial[] = {"link", "LinkUSB", "DS9097U", "ds2480b"};
 	static const char *const passive[] = {"passive", "DS9097", "/dev/ttyUSB0"};
 	static const char *const i2c[] = {"i2c-1", "I2C-10", "DS2482", "ds2482-800", "DS2484"};
 	static const char *const hosts[] = {"i2c-garden", "i2c-1a",  "ds2482-garden", "ds2482-",
 	                                    "ds24820",    "ds2480c", "ds2413",        "ds24"};
 
-	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]); i++) {
-		is_refused(usb[i], -EINVAL, "target w1");
-		is_refused(usb[i], -EINVAL, "owserver");
-	}
+	for (size_t i = 0; i < sizeof(usb) / sizeof(usb[0]); i++)
+		is_refused(usb[i], -EINVAL, "write usb:");
 	for (size_t i = 0; i < sizeof(serial) / sizeof(serial[0]); i++)
 		is_refused(serial[i], -EINVAL, "serial:/dev/ttyUSB0");
 	for (size_t i = 0; i < sizeof(passive) / sizeof(passive[0]); i++)
@@ -145,6 +144,11 @@ static void test_an_adapter_that_others_drive_is_refused_with_the_way_to_it(void
 	becomes("serial:/dev/ttyUSB0", "serial");
 	becomes("serial", "serial");
 	becomes("uart:/dev/ttyUSB0", "uart");
+	is_refused("usb:all", -EINVAL, "or its place, as 1-1.4");
+	becomes("usb:", "usb");
+	becomes("usb", "usb");
+	becomes("usb:81.3B4429000000", "usb");
+	becomes("usb:1-1.4", "usb");
 	for (size_t i = 0; i < sizeof(i2c) / sizeof(i2c[0]); i++)
 		is_refused(i2c[i], -EINVAL, "i2c:/dev/i2c-1");
 	becomes("link:4304", "owserver");

@@ -1,0 +1,221 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Transfers by libusb, where owsd is built with it. owsd finds and opens the device file itself:
+ * libusb looks for no devices, starts no thread and needs no netlink socket. Its blocking functions
+ * are enough on a thread that has one adapter. They allocate a transfer for each call; so does its
+ * Linux part for each submission of a transfer that is kept, and nothing would be gained.
+ */
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/usbdevice_fs.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "hal/base/chip_lock.h"
+#include "hal/base/rivals.h"
+#include "hal/usb/find.h"
+#include "hal/usb/libusb.h"
+
+#define INTERFACE 0
+
+#ifdef OWSD_LIBUSB
+#include <libusb-1.0/libusb.h>
+
+#define QUICK 3 /* alternate setting: the state each ms, packets of 64 bytes */
+#define VENDOR 0x40
+
+struct adapter {
+	struct usb_port port;
+	int fd;
+	libusb_context *context;
+	libusb_device_handle *handle;
+};
+
+static int error_of(int err)
+{
+	static const int errors[][2] = {
+		{LIBUSB_ERROR_NO_DEVICE, -ENODEV},
+		{LIBUSB_ERROR_NOT_FOUND, -ENODEV},
+		{LIBUSB_ERROR_TIMEOUT, -ETIMEDOUT},
+		{LIBUSB_ERROR_BUSY, -EBUSY},
+	};
+
+	for (size_t i = 0; i < sizeof(errors) / sizeof(errors[0]); i++)
+		if (errors[i][0] == err)
+			return errors[i][1];
+	return err < 0 ? -EIO : 0;
+}
+
+static libusb_device_handle *handle_of(struct usb_port *port)
+{
+	return ((struct adapter *)port)->handle;
+}
+
+static int adapter_control(struct usb_port *port, uint8_t request, uint16_t value, uint16_t index)
+{
+	return error_of(libusb_control_transfer(handle_of(port), VENDOR, request, value, index,
+	                                        NULL, 0, USB_TIMEOUT_MS));
+}
+
+static int adapter_transfer(struct usb_port *port, uint8_t endpoint, uint8_t *bytes, size_t n)
+{
+	int done = 0, err;
+
+	if (endpoint == USB_STATE)
+		err = libusb_interrupt_transfer(handle_of(port), endpoint, bytes, (int)n, &done,
+		                                USB_TIMEOUT_MS);
+	else
+		err = libusb_bulk_transfer(handle_of(port), endpoint, bytes, (int)n, &done,
+		                           USB_TIMEOUT_MS);
+	return err ? error_of(err) : done;
+}
+
+static int adapter_clear(struct usb_port *port)
+{
+	static const uint8_t endpoints[] = {USB_STATE, USB_OUT, USB_IN};
+	int err = 0;
+
+	for (size_t i = 0; !err && i < sizeof(endpoints); i++)
+		err = error_of(libusb_clear_halt(handle_of(port), endpoints[i]));
+	return err;
+}
+
+static int adapter_reset(struct usb_port *port)
+{
+	int err = libusb_reset_device(handle_of(port));
+
+	if (!err)
+		err = libusb_set_interface_alt_setting(handle_of(port), INTERFACE, QUICK);
+	return error_of(err);
+}
+
+static void adapter_close(struct usb_port *port)
+{
+	struct adapter *adapter = (struct adapter *)port;
+
+	if (adapter->handle)
+		libusb_close(adapter->handle);
+	if (adapter->context)
+		libusb_exit(adapter->context);
+	if (adapter->fd >= 0) {
+		chip_unlock(adapter->fd, 0);
+		close(adapter->fd); /* and the interface is free */
+	}
+	free(adapter);
+}
+
+static const struct usb_port_ops adapter_ops = {
+	.control = adapter_control,
+	.transfer = adapter_transfer,
+	.clear = adapter_clear,
+	.reset = adapter_reset,
+	.close = adapter_close,
+};
+
+/* The kernel's driver loses the interface, and cannot take it while this process has it. */
+static int claim(struct adapter *adapter)
+{
+	int err = libusb_set_option(NULL, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
+
+	if (!err)
+		err = libusb_init(&adapter->context);
+	if (!err)
+		err = libusb_wrap_sys_device(adapter->context, adapter->fd, &adapter->handle);
+	if (!err)
+		(void)libusb_detach_kernel_driver(adapter->handle, INTERFACE);
+	if (!err)
+		err = libusb_claim_interface(adapter->handle, INTERFACE);
+	if (!err)
+		err = libusb_set_interface_alt_setting(adapter->handle, INTERFACE, QUICK);
+	return error_of(err);
+}
+
+static int explain(int err, const struct usb_place *place, int holder, char *why, size_t size)
+{
+	char who[RIVALS_TEXT] = "another program, as an owserver";
+
+	switch (err) {
+	case -ENOENT:
+	case -ENODEV:
+		snprintf(why, size, "the adapter at USB %s is gone: is it plugged in?",
+		         place->name);
+		return -ENODEV;
+	case -EACCES:
+	case -EPERM:
+		snprintf(why, size,
+		         "no permission for the adapter at USB %s (%s): the user has to be in the "
+		         "group dialout, to which owsd's udev rule gives it",
+		         place->name, place->device);
+		return -EACCES;
+	case -EADDRINUSE:
+		rivals_name(RIVALS_PROC, holder, who, sizeof(who));
+		break;
+	case -EBUSY:
+		if (!rivals_find(RIVALS_PROC, place->device, who, sizeof(who)) && *place->driver &&
+		    strcmp(place->driver, "usbfs") != 0)
+			snprintf(who, sizeof(who), "the kernel's driver %s", place->driver);
+		break;
+	default:
+		snprintf(why, size, "the adapter at USB %s: %s", place->name, strerror(-err));
+		return err;
+	}
+	snprintf(why, size, "the adapter at USB %s is in use by %s", place->name, who);
+	return -EBUSY;
+}
+
+static int adapter_open(const struct usb_place *place, struct usb_port **port, char *why,
+                        size_t size)
+{
+	struct adapter *adapter = calloc(1, sizeof(*adapter));
+	int holder = 0, err;
+
+	if (!adapter)
+		return -ENOMEM;
+	adapter->port.ops = &adapter_ops;
+	adapter->fd = open(place->device, O_RDWR | O_CLOEXEC);
+	err = adapter->fd < 0 ? -errno : chip_lock(adapter->fd, 0, &holder);
+	if (!err)
+		err = claim(adapter);
+	if (!err)
+		*port = &adapter->port;
+	else
+		adapter_close(&adapter->port);
+	return err ? explain(err, place, holder, why, size) : 0;
+}
+#else
+static int adapter_open(const struct usb_place *place, struct usb_port **port, char *why,
+                        size_t size)
+{
+	(void)place, (void)port;
+	snprintf(why, size,
+	         "this owsd was built without libusb: install libusb-1.0-0-dev and build it again");
+	return -EOPNOTSUPP;
+}
+#endif
+
+/* A driver takes it, if one is loaded: it may have lost it to a process that was killed. */
+static void give_back(const struct usb_place *place)
+{
+	struct usbdevfs_ioctl connect = {.ifno = INTERFACE, .ioctl_code = USBDEVFS_CONNECT};
+	int fd = open(place->device, O_RDWR | O_CLOEXEC);
+
+	if (fd < 0)
+		return;
+	(void)ioctl(fd, USBDEVFS_IOCTL, &connect);
+	close(fd);
+}
+
+static unsigned list(struct usb_place places[USB_PLACES])
+{
+	return usb_find("/sys/bus/usb/devices", places);
+}
+
+const struct usb_system usb_linux = {
+	.list = list,
+	.open = adapter_open,
+	.give_back = give_back,
+	.proc = RIVALS_PROC,
+};
