@@ -53,6 +53,8 @@
 #                                 make test-gpio-pi the same of a Raspberry Pi 3
 #
 #   make deb                      Debian packages in build/deb; ARCH=arm64, SUITE=trixie for others
+#   make repository               an apt repository of what make deb made, in build/repository, signed
+#                                 by REPOSITORY_KEY=FINGERPRINT (docs/repository.md)
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
 #   make test-dist                that tarball built and run without git and network
 #   make test-package             packages of three architectures, lintian, install to purge
@@ -309,7 +311,7 @@ PYTHON_MADE := $(if $(PYTHON),$(B)/python/ows.py $(LIBRARIES:%=$(B)/python/%.so.
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
 
 .PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
-        deb test-package test-service test-fresh dist test-dist clean \
+        deb repository test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
         touched mutate help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(B)/core.a $(B)/with/libraries
@@ -730,8 +732,14 @@ uninstall-service:
 deb:
 	@sh board/make-deb $(if $(SUITE),--suite $(SUITE)) $(ARCH)
 
+# build/deb as an apt repository: REPOSITORY_KEY='OLD NEW' REPOSITORY_URL=https://... REPOSITORY=DIR
+repository:
+	@sh board/install-deps repository
+	@sh board/make-repository $(if $(REPOSITORY),--out $(REPOSITORY)) \
+	    $(if $(REPOSITORY_URL),--url $(REPOSITORY_URL)) $(REPOSITORY_KEY)
+
 test-package:
-	@sh board/install-deps chroot $(if $(OR_SKIP),|| true)
+	@sh board/install-deps chroot repository $(if $(OR_SKIP),|| true)
 	@sh tests/package/run $(if $(OR_SKIP),--or-skip) $(if $(SUITE),--suite $(SUITE)) $(ARCH)
 
 # The two commands of the README in new systems: DEBIAN=bookworm HAVE=gcc AT=tmp ORDER=run-test

@@ -57,6 +57,10 @@ LOOKED_AT = {
     "mbpoll": [r"-m tcp -0 -1 -t 4:float -B -r 46002 -c 3 192\.168\.1\.10"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
     "halcompile": [r"--install --userspace --extra-link-args=-lows owsd_hal\.c"],
+    "curl": [r"-fsS -o /etc/apt/sources\.list\.d/owsd\.sources https://packages\.example\.org/owsd/\w+\.sources"],
+    "gpg": [r"--quick-generate-key owsd packages <packages@example\.org> ed25519 sign 2y",
+            r"--list-keys --with-colons packages@example\.org", "--show-keys", "--quick-set-expire OLD 2y"],
+    "rsync": [r"-a( --exclude InRelease)? build/repository/ packages\.example\.org:/srv/www/owsd"],
     "halrun": [r"-I owsd\.hal"],
     "rpi-image-gen": [r"build -S /path/to/owsd/board/image/rpi-image-gen -c owsd\.yaml"],
 }
@@ -187,10 +191,12 @@ def make(arguments):
 
 
 def apt(arguments):
+    if arguments in (["update"], ["upgrade"], ["list", "-a", "owsd"]):
+        return
     if arguments[:1] != ["install"] or len(arguments) < 2:
         fail("only install is known here")
     for word in arguments[1:]:
-        package = re.match(r"(?:\./(?:build/deb/)?)?([a-z0-9-]+)(?:_\*\.deb)?$", word)
+        package = re.match(r"(?:\./(?:build/deb/)?)?([a-z0-9-]+)(?:_\*\.deb|=VERSION)?$", word)
         if not package or package[1] not in DEBIAN:
             fail(f"no package {word}")
 
