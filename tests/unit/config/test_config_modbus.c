@@ -45,9 +45,9 @@ static void test_what_cannot_be_is_refused_with_a_reason(void)
 		{"Modbus { }", "f:2:1: error: Modbus without Listen: write it, as Listen "
 	                       "\"127.0.0.1:502\"\n"},
 		{"Modbus { " LISTEN "WordOrder mixed }",
-	         "f:2:42: error: WordOrder \"mixed\": expected big or little\n"},
+	         "f:2:43: error: WordOrder \"mixed\": expected big or little\n"},
 		{"Modbus { " LISTEN "BadValue 0 }",
-	         "f:2:41: error: BadValue \"0\": expected nan or exception\n"},
+	         "f:2:42: error: BadValue \"0\": expected nan or exception\n"},
 		{"Modbus { " LISTEN "UnitId 248 }",
 	         "f:2:39: error: UnitId \"248\": expected a whole number from 0 to 247\n"},
 		{"Modbus { " LISTEN "Map \"here\" }",

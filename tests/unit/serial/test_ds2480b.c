@@ -296,7 +296,8 @@ static void test_after_an_error_nothing_goes_on_without_a_reset(void)
 	sent = serial.sim.bytes;
 	TEST_ASSERT_EQUAL_INT(-EIO, part_read(serial.wire, &byte, 1));
 	TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EIO,
+	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
 	TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
 	serial_check("t");
 }

@@ -132,27 +132,29 @@ static void test_a_pulse_and_a_direction_that_do_not_come_back_are_errors(void)
 		sent = serial.sim.bytes;
 		TEST_ASSERT_EQUAL_INT(-EIO, part_read(serial.wire, &byte, 1));
 		TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
-		TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, rom, conflict));
+		TEST_ASSERT_EQUAL_INT(
+			-EIO, serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
 		TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
 	}
-	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
-	serial.sim.answered = 8 * 200 - 3; /* bit 0 of the third answer from here */
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	serial.sim.answered = 8 * 200 - 11; /* bit 0 of the third answer after the command */
 	serial.sim.noise_each = 200;
-	TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EIO,
+	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
 	serial.sim.noise_each = 0;
 	serial_check("t");
 }
 
 static void test_a_path_leads_where_it_is_told_and_ends_where_nobody_answers(void)
 {
-	uint8_t command = ONEWIRE_SEARCH, rom[8] = {0x3A}, conflict[8];
-	const struct link_part part = {.reset = true, .out = &command, .out_n = 1};
+	uint8_t rom[8] = {0x3A}, conflict[8];
 
 	serial_start(SIM_PASSIVE, &serial_passive, house);
-	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
-	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(0,
+	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
 	TEST_ASSERT_EQUAL_HEX8(0x3A, rom[0]);
-	TEST_ASSERT_EQUAL_INT(0, serial.wire->ops->run(serial.wire, &part));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
 	for (unsigned i = 0; i < 2; i++) {
 		const struct sim_event pull = {.what = SIM_PLUG,
 		                               .slave = serial.net.chip[0].wire[0].slaves[i],
@@ -160,7 +162,8 @@ static void test_a_path_leads_where_it_is_told_and_ends_where_nobody_answers(voi
 
 		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&serial.net, &pull));
 	}
-	TEST_ASSERT_EQUAL_INT(-EBADMSG, serial.wire->ops->path(serial.wire, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EBADMSG,
+	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
 }
 
 /* More than goes at once, there and back. */
