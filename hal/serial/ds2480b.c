@@ -399,5 +399,6 @@ static const struct link_ops ds2480b_link = {
 const struct serial_kind serial_ds2480b = {
 	.link = &ds2480b_link,
 	.facts = {.strong = true, .splits = true},
+	.lag_ns = 8 * SLOT_NS + 10 * NS_PER_S / BAUD,
 	.begin = ds2480b_begin,
 };

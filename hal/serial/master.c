@@ -134,15 +134,18 @@ int serial_exchange(struct serial_master *master, unsigned baud, const uint8_t *
                     uint8_t *in, size_t n, size_t *got)
 {
 	struct serial_port *port = master->port;
-	int64_t line_ns = 10 * NS_PER_S / baud * (int64_t)(out_n + n), until_ns;
+	int64_t byte_ns = 10 * NS_PER_S / baud, until_ns;
 
 	*got = 0;
 	if (!port)
 		return -ENODEV;
 	master->transfers++;
-	until_ns = bus_now(port->env) + line_ns + LATE_NS;
+	until_ns = bus_now(port->env) + byte_ns * (int64_t)(out_n + n) + LATE_NS;
 	int err = port->ops->write(port, out, out_n);
 
+	/* to take each answer as it comes would wake us as often */
+	if (!err && n)
+		err = serial_wait(master, byte_ns * (int64_t)out_n + master->kind->lag_ns);
 	while (!err && *got < n) {
 		int came = port->ops->read(port, in + *got, n - *got, until_ns);
 

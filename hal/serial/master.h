@@ -16,6 +16,7 @@ struct serial_master;
 struct serial_kind {
 	const struct link_ops *link;
 	struct link_facts facts;
+	int64_t lag_ns; /* an answer is whole so long after what it answers was sent */
 	/* The port was opened: 0, or an error, and why gets what answers in its place. */
 	int (*begin)(struct serial_master *master, char *why, size_t why_size);
 };
@@ -59,8 +60,8 @@ void serial_destroy(struct link_master *base);
 /* For the kinds: wait for a time. 0 or -ECANCELED. */
 int serial_wait(struct serial_master *master, int64_t ns);
 /*
- * Write all, and read n bytes. Their time on the line at this speed, and some more, is the
- * deadline: -ETIMEDOUT, and *got is how many came.
+ * Write all, and read n bytes, not before the last one can have come. Their time on the line at
+ * this speed, and some more, is the deadline: -ETIMEDOUT, and *got is how many came.
  */
 int serial_exchange(struct serial_master *master, unsigned baud, const uint8_t *out, size_t out_n,
                     uint8_t *in, size_t n, size_t *got);

@@ -228,5 +228,6 @@ static const struct link_ops passive_link = {
 const struct serial_kind serial_passive = {
 	.link = &passive_link,
 	.facts = {.splits = true},
+	.lag_ns = SLOT_NS / 10, /* it comes as it goes: a bit for what the port's own time is off */
 	.begin = passive_begin,
 };

@@ -45,6 +45,7 @@ static int port_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t
 	size_t got = 0;
 
 	(void)port;
+	serial.reads++;
 	if (is_gone())
 		return -ENODEV;
 	if (serial.host.shutdown)

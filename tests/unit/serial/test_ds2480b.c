@@ -34,15 +34,16 @@ void tearDown(void)
 	serial_end();
 }
 
-static void test_a_reading_is_one_write_and_takes_the_time_of_its_bytes(void)
+static void test_a_reading_is_one_write_and_one_read_and_takes_the_time_of_its_bytes(void)
 {
 	int64_t begun;
 
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
-	unsigned writes = serial.writes;
+	unsigned writes = serial.writes, reads = serial.reads;
 	begun = serial.host.now;
 	serial_check("t");
 	TEST_ASSERT_EQUAL_UINT(writes + 1, serial.writes);
+	TEST_ASSERT_EQUAL_UINT(reads + 1, serial.reads);
 	TEST_ASSERT_LESS_THAN_INT64(27 * HOST_MS, serial.host.now - begun);
 }
 
@@ -543,7 +544,7 @@ static void test_what_a_transaction_costs_is_counted(void)
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_a_reading_is_one_write_and_takes_the_time_of_its_bytes);
+	RUN_TEST(test_a_reading_is_one_write_and_one_read_and_takes_the_time_of_its_bytes);
 	RUN_TEST(test_the_chip_is_set_up_for_long_lines_and_kept_at_flexible_speed);
 	RUN_TEST(test_a_chip_is_reset_by_break_and_slow_byte_and_gets_its_time_base);
 	RUN_TEST(test_settings_that_do_not_come_back_are_an_error);

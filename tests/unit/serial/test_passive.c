@@ -30,7 +30,10 @@ static void test_a_reading_is_a_reset_and_slots(void)
 
 	serial_start(SIM_PASSIVE, &serial_passive, house);
 	serial.wire->ops->cost(serial.wire, &before);
+	unsigned reads = serial.reads;
+
 	serial_check("t");
+	TEST_ASSERT_EQUAL_UINT(reads + 3, serial.reads);
 	serial.wire->ops->cost(serial.wire, &after);
 	TEST_ASSERT_EQUAL_UINT64(1, after.resets - before.resets);
 	TEST_ASSERT_EQUAL_UINT64(1041667 + 19 * 8 * 86806, after.wire_ns - before.wire_ns);
