@@ -49,9 +49,9 @@ static void test_what_cannot_be_is_refused_with_a_reason(void)
 		{"Modbus { " LISTEN "BadValue 0 }",
 	         "f:2:42: error: BadValue \"0\": expected nan or exception\n"},
 		{"Modbus { " LISTEN "UnitId 248 }",
-	         "f:2:39: error: UnitId \"248\": expected a whole number from 0 to 247\n"},
+	         "f:2:40: error: UnitId \"248\": expected a whole number from 0 to 247\n"},
 		{"Modbus { " LISTEN "Map \"here\" }",
-	         "f:2:36: error: Map \"here\": expected a path from the root, at most 255 bytes\n"},
+	         "f:2:37: error: Map \"here\": expected a path from the root, at most 255 bytes\n"},
 	};
 
 	expect_errors(cases, COUNT(cases), parse_driver);
