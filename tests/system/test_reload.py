@@ -234,7 +234,7 @@ def test_the_reload_of_each_service_fails_for_a_file_that_is_refused(scene):
     good = rio(target, ROOM, Web=page)
     units = [unit for unit in (owsdtest.SOURCE / "board/systemd").glob("owsd*@.service")
              if "ExecReload=" in unit.read_text()]
-    assert len(units) == 6, units
+    assert len(units) == 7, units
     for unit in units:
         words = re.search(r"ExecReload=@S?BINDIR@/(\S+) -n %i (\S+)$", unit.read_text(), re.M)
         assert words, f"{unit}: its reload tells nobody what became of it"
