@@ -20,6 +20,7 @@ int main(int argc, char **argv)
 		.event = pushing_event,
 		.tick = pushing_tick,
 		.close = pushing_close,
+		.report = pushing_report,
 	};
 
 	return face_main(&ops, argc, argv);

@@ -170,16 +170,34 @@ static void believe_clock(struct face *face, int64_t now_ns)
 		            (long long)(now_ns / NS_PER_S));
 }
 
+/* What keeps it from pushing; NULL: nothing does. */
+static const char *trouble_of(const struct pushing *p)
+{
+	return p->trouble == PUSH_AWAY     ? "the server is lost"
+	       : p->trouble == PUSH_DENIED ? "the server refuses us"
+	       : p->refused                ? "the server refuses lines"
+	                                   : NULL;
+}
+
+void pushing_report(struct face *face, FILE *out)
+{
+	const char *trouble = trouble_of(face->own);
+
+	if (trouble)
+		fprintf(out,
+		        "trouble %s: look at Url and TokenFile of the block Influx, and at its log\n",
+		        trouble);
+}
+
 static void pushing_status(struct face *face)
 {
 	struct pushing *p = face->own;
-	const char *state = !p->on                      ? "no Influx block: off"
-	                    : !p->believed              ? "waiting for the time"
-	                    : p->trouble == PUSH_AWAY   ? "the server is lost"
-	                    : p->trouble == PUSH_DENIED ? "the server refuses us"
-	                    : p->refused                ? "the server refuses lines"
-	                    : face->live                ? "pushing"
-	                                                : "waiting for owsd";
+	const char *trouble = trouble_of(p);
+	const char *state = !p->on         ? "no Influx block: off"
+	                    : !p->believed ? "waiting for the time"
+	                    : trouble      ? trouble
+	                    : face->live   ? "pushing"
+	                                   : "waiting for owsd";
 
 	face_status(face,
 	            "%s; %llu values sent, %u in memory, %llu from the history, %llu refused, "

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <stdint.h>
+#include <stdio.h>
 
 struct face;
 struct face_event;
@@ -18,3 +19,5 @@ void pushing_changes(struct face *face, const int *signals, int n);
 void pushing_event(struct face *face, const struct face_event *event);
 void pushing_tick(struct face *face, int64_t now_ns);
 void pushing_close(struct face *face);
+/* Writes what keeps it from pushing. */
+void pushing_report(struct face *face, FILE *out);

@@ -14,6 +14,7 @@ int main(int argc, char **argv)
 		.event = recording_event,
 		.tick = recording_tick,
 		.close = recording_close,
+		.report = recording_report,
 	};
 
 	return face_main(&ops, argc, argv);

@@ -410,6 +410,15 @@ static void recording_status(struct face *face, const struct history_state *stat
 		            r->directory, (unsigned long long)state->rows);
 }
 
+void recording_report(struct face *face, FILE *out)
+{
+	const struct recording *r = face->own;
+
+	if (r->disk_err)
+		fprintf(out, "trouble %s cannot be written: %s%s\n", r->directory,
+		        strerror(-r->disk_err), advice_on_disk(r, r->disk_err));
+}
+
 /* The wall-clock time of the next interval as a boot time, not later than the next tick. */
 static int64_t next_tick(const struct recording *r, int64_t due_ns, int64_t now_ns)
 {

@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "src/faces/kit/wall_clock.h"
 #include "src/history/file/place.h"
@@ -39,3 +40,5 @@ void recording_changes(struct face *face, const int *signals, int n);
 void recording_event(struct face *face, const struct face_event *event);
 void recording_tick(struct face *face, int64_t now_ns);
 void recording_close(struct face *face);
+/* Writes what keeps it from recording. */
+void recording_report(struct face *face, FILE *out);

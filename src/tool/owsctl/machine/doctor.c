@@ -60,28 +60,9 @@ bool doctor_is_safe(const char *remedy)
 	return false;
 }
 
-/* Where an owsd of that name has its configuration: below a root that of its service. */
-static void find_configuration(struct doctor *d)
-{
-	if (*d->root)
-		snprintf(d->file, sizeof(d->file), "%s/etc/owsd/%.200s.rio", d->root, d->instance);
-	else
-		instance_config(d->instance, d->file);
-}
-
-static void open_image(struct doctor *d)
-{
-	struct ows_daemon daemon = {0};
-
-	d->ows = NULL;
-	d->err = ows_open_as(d->instance, OWS_READ, "owsctl doctor", &d->ows);
-	if (!d->err)
-		ows_daemon(d->ows, d->now_ns, &daemon);
-	d->alive = daemon.alive;
-}
-
 bool doctor_look(struct doctor *d)
 {
+	struct ows_daemon daemon = {0};
 	char folder[400], why[800];
 
 	d->found = (struct board_report){0};
@@ -89,8 +70,16 @@ bool doctor_look(struct doctor *d)
 	d->now_ns = ows_now();
 	d->faces = faces_table(d->face);
 	units_load(d);
-	find_configuration(d);
-	open_image(d);
+	/* of another machine it is that of the service */
+	if (*d->root)
+		snprintf(d->file, sizeof(d->file), "%s/etc/owsd/%s.rio", d->root, d->instance);
+	else
+		instance_config(d->instance, d->file);
+	d->ows = NULL;
+	d->err = ows_open_as(d->instance, OWS_READ, "owsctl doctor", &d->ows);
+	if (!d->err)
+		ows_daemon(d->ows, d->now_ns, &daemon);
+	d->alive = daemon.alive;
 	board_folder(folder, sizeof(folder));
 	board_look(d->root, folder, NULL, &d->board, why, sizeof(why));
 	for (size_t i = 0; i < sizeof(checks) / sizeof(checks[0]); i++) {
@@ -211,7 +200,8 @@ int verb_doctor(struct ctl *ctl, int argc, char **argv)
 	if (!segment_name_ok(ctl->instance))
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(ctl->instance));
 	d.instance = ctl->instance;
-	if (doctor_look(&d) && fixes) {
+	doctor_look(&d);
+	if (fixes) {
 		fix(&d);
 		doctor_look(&d);
 	}

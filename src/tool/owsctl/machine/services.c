@@ -101,7 +101,11 @@ static void check_refused(struct doctor *d)
 	report_add(&d->found, BOARD_MISSING,
 	           "owsd goes on with what it loaded before: a reload was refused %s ago: %s",
 	           when_span(d->now_ns - refused.time_ns, span), refused.text);
-	report_remedy(&d->found, "sudo owsctl -n %s reload", d->instance);
+	/* what only a restart can change is said in the text */
+	report_remedy(&d->found,
+	              strstr(refused.text, "restart") ? "sudo systemctl restart owsd@%s"
+	                                              : "sudo owsctl -n %s reload",
+	              d->instance);
 }
 
 void check_owsd(struct doctor *d)
@@ -113,19 +117,17 @@ void check_owsd(struct doctor *d)
 		check_twins(d);
 		check_refused(d);
 		ows_daemon(d->ows, d->now_ns, &daemon);
-		report_add(&d->found, BOARD_FACT, "owsd %s: process %d, %d signal%s, %d not good",
-		           d->instance, (int)daemon.pid, ows_count(d->ows),
-		           ows_count(d->ows) == 1 ? "" : "s", stats_not_good(d->ows, d->now_ns));
+		report_add(&d->found, BOARD_FACT,
+		           "instance %s: process %d, %d signal%s, %d not good", d->instance,
+		           (int)daemon.pid, ows_count(d->ows), ows_count(d->ows) == 1 ? "" : "s",
+		           stats_not_good(d->ows, d->now_ns));
 		return;
 	}
 	/* a service that does not run is reported; of one of another machine there is no process */
 	if (d->err == -EACCES || (unit && (*d->root || !unit_is_active(unit))))
 		return;
-	if (d->err && d->err != -ENOENT)
-		report_add(&d->found, BOARD_MISSING, "the shared memory of %s cannot be read: %s",
-		           d->instance, strerror(-d->err));
-	else
-		report_add(&d->found, BOARD_MISSING, "owsd %s does not run", d->instance);
+	report_add(&d->found, BOARD_MISSING, "owsd %s does not run: %s", d->instance,
+	           d->err && d->err != -ENOENT ? strerror(-d->err) : "it has no heartbeat");
 	if (unit)
 		report_remedy(&d->found, "sudo systemctl restart owsd@%s", d->instance);
 	else

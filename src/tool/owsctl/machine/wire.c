@@ -34,16 +34,6 @@ static bool is_up(struct ows *h, uint32_t wire)
 	return false;
 }
 
-static bool all_down(struct ows *h)
-{
-	struct ows_target way;
-
-	for (int i = 0; ows_target(h, i, &way) == 0; i++)
-		if (way.state == 1)
-			return false;
-	return true;
-}
-
 /* The words of owsd on a target have the remedy. */
 static void report_target(struct doctor *d, int index, const char *names, bool up)
 {
@@ -65,24 +55,20 @@ static void report_target(struct doctor *d, int index, const char *names, bool u
 /* A wire that no way reaches is one fault. Of its ways that counts which this board may have. */
 static void report_wire_down(struct doctor *d, uint32_t wire)
 {
-	struct ows_target way;
-	char names[300] = "";
-	size_t used = 0;
+	struct ows_target way, best;
 	const char *where;
-	int best = -1;
+	int found = -1;
 
 	for (int i = 0; ows_target(d->ows, i, &way) == 0; i++) {
 		const struct bus_ops *ops = bus_backend(way.name, &where);
 
-		if (way.group != wire)
+		if (way.group != wire || (found >= 0 && !(ops && ops->board_advice)))
 			continue;
-		if (best < 0 || (ops && ops->board_advice))
-			best = i;
-		if (used < sizeof(names))
-			used += (size_t)snprintf(names + used, sizeof(names) - used, "%s%s",
-			                         used ? " | " : "", way.name);
+		found = i;
+		best = way;
 	}
-	report_target(d, best, names, false);
+	if (found >= 0)
+		report_target(d, found, best.name, false);
 }
 
 void check_targets(struct doctor *d)
@@ -112,7 +98,7 @@ static void add_signal(struct fault *fault, const char *name)
 
 static unsigned collect(struct doctor *d, struct fault *faults)
 {
-	bool down = all_down(d->ows);
+	struct ows_target target;
 	struct ows_value value;
 	struct ows_info info;
 	unsigned count = 0, k;
@@ -125,7 +111,8 @@ static unsigned collect(struct doctor *d, struct fault *faults)
 		if (value.quality == OWS_Q_INITIAL && !value.err)
 			continue;
 		/* the target is reported */
-		if (value.quality == OWS_Q_TARGET && down)
+		if (value.quality == OWS_Q_TARGET &&
+		    (ows_target(d->ows, value.target, &target) || !is_up(d->ows, target.group)))
 			continue;
 		for (k = 0; k < count; k++)
 			if (faults[k].quality == value.quality && faults[k].err == value.err)
