@@ -16,7 +16,7 @@ on_copy install
 for f in lib/libows.so lib/libows.so.1 lib/libows.a lib/pkgconfig/libows.pc include/ows.h \
 	lib/libows-history.so lib/libows-history.so.1 lib/libows-history.a \
 	lib/pkgconfig/libows-history.pc include/ows_history.h \
-	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board \
+	include/ows_layout.h share/owsd/boards/raspberry-pi-4.board share/owsd/faces \
 	share/owsd/examples/openplc/owsd.cpp share/owsd/examples/linuxcnc/owsd_hal.c; do
 	[ -s "$root/opt/owsd/$f" ] || { echo "missing: $f"; exit 1; }
 done

@@ -190,6 +190,7 @@ def test_bash_completes_verbs_signals_and_instances(scene):
                             (["-n", ""], ["house"]), (["remove", "h"], ["house"]),
                             (["watch", "-l"], ["-l"]), (["alarms", "ac"], ["ack"]),
                             (["config", "wire.s"], ["wire.sim"]), (["config", "x", "mo"], ["move"]),
+                            (["enable", "we"], ["web"]), (["disable", "mq"], ["mqtt"]),
                             (["stats", ""], [])):
         assert sorted(completed(scene, place, *words)) == sorted(expected), words
     known = subprocess.run(["bash", "-c", f". {owsdtest.SOURCE}/board/completion/owsctl.bash; complete -p owsctl-sim"],
@@ -203,7 +204,7 @@ def test_zsh_completes_the_same(scene):
     first = (owsdtest.SOURCE / "board/completion/_owsctl").read_text().splitlines()[0]
     assert first.split() == ["#compdef", "owsctl", "owsctl-sim"]
     _, place = alone(scene)
-    for typed, expected in (("wa", {"watch", "wait"}), ("get ro", {"room"})):
+    for typed, expected in (("wa", {"watch", "wait"}), ("get ro", {"room"}), ("enable we", {"web"})):
         script = (f"compadd() {{ print -l -- ${{@:#--}} }}; words=(owsctl {typed}); CURRENT=$#words; "
                   f". {owsdtest.SOURCE}/board/completion/_owsctl")
         done = subprocess.run(["zsh", "-fc", script], capture_output=True, text=True, check=False,
