@@ -133,9 +133,11 @@ static void test_json_has_the_same_with_what_is_safe(void)
 	char first[600];
 
 	unpack("tests/unit/data/machines/no-module.machine", first, sizeof(first));
+	fclose(make_file("dev/serial/by-id/usb-FTDI_LinkUSB-if00-port0"));
 	doctor_at_root(" --json");
 	holds(out, "[{\"kind\":\"todo\",\"check\":\"board\",\"text\":\"there is no /dev/i2c-1");
 	holds(out, "\"safe\":true}");
+	holds(out, "serial port: /dev/serial/by-id/usb-FTDI_LinkUSB-if00-port0\"");
 	holds(out,
 	      "{\"kind\":\"fact\",\"check\":\"board\",\"text\":\"board: Raspberry Pi 4 Model B");
 }

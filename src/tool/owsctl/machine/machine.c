@@ -8,8 +8,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/base/rivals.h"
 #include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
+#include "hal/serial/find.h"
 #include "src/config/check/check.h"
 #include "src/config/read/load.h"
 #include "src/config/read/report.h"
@@ -140,6 +142,24 @@ static bool is_of_person(const struct board_line *line)
 	return strncmp(line->remedy, "sudo adduser ", 13) == 0;
 }
 
+/* The serial ports that stay what they are, and who has one. */
+static void report_serial(struct doctor *d)
+{
+	char pattern[DOCTOR_ROOT + 40], proc[DOCTOR_ROOT + 8], who[RIVALS_TEXT];
+	glob_t found;
+
+	snprintf(proc, sizeof(proc), "%s" RIVALS_PROC, d->root);
+	snprintf(pattern, sizeof(pattern), "%s" SERIAL_BY_ID "/*", d->root);
+	if (glob(pattern, 0, NULL, &found) == 0)
+		for (size_t i = 0; i < found.gl_pathc; i++) {
+			rivals_find(proc, found.gl_pathv[i], who, sizeof(who));
+			report_add(&d->found, BOARD_FACT, "serial port: %s%s%s",
+			           found.gl_pathv[i] + strlen(d->root), *who ? ", open in " : "",
+			           who);
+		}
+	globfree(&found);
+}
+
 void check_board(struct doctor *d)
 {
 	bool needed = lacks(d, needs_board), used = needed;
@@ -165,6 +185,7 @@ void check_board(struct doctor *d)
 		report_remedy(&d->found, "%s",
 		              kind == BOARD_MISSING && !*line->remedy ? line->text : line->remedy);
 	}
+	report_serial(d);
 	if (*d->board.master && lacks(d, needs_master)) {
 		report_add(&d->found, needed ? BOARD_NOTE : BOARD_MISSING,
 		           "the kernel has no 1-Wire master, as for a sensor at a GPIO pin");

@@ -55,12 +55,10 @@ void check_services(struct doctor *d)
 			report_add(&d->found, BOARD_MISSING, "%s is enabled, and does not run",
 			           unit->id);
 			report_remedy(&d->found, "sudo systemctl start %s", unit->id);
-		} else if (own && !unit_is_enabled(d, unit->id)) {
-			bool runs = unit_is_active(unit);
-
-			report_add(&d->found, runs ? BOARD_NOTE : BOARD_MISSING, "%s %s", unit->id,
-			           runs ? "does not start with the machine" : "is not switched on");
-			report_remedy(&d->found, "sudo systemctl enable --now %s", unit->id);
+		} else if (own && unit_is_active(unit) && !unit_is_enabled(d, unit->id)) {
+			report_add(&d->found, BOARD_NOTE, "%s does not start with the machine",
+			           unit->id);
+			report_remedy(&d->found, "sudo systemctl enable %s", unit->id);
 		}
 	}
 }
@@ -110,8 +108,9 @@ static void check_refused(struct doctor *d)
 
 void check_owsd(struct doctor *d)
 {
-	struct ows_daemon daemon = {0};
+	const struct face_row service = {.program = "owsd"};
 	const struct unit *unit = units_owsd(d);
+	struct ows_daemon daemon = {0};
 
 	if (d->alive) {
 		check_twins(d);
@@ -123,13 +122,16 @@ void check_owsd(struct doctor *d)
 		           stats_not_good(d->ows, d->now_ns));
 		return;
 	}
-	/* a service that does not run is reported; of one of another machine there is no process */
-	if (d->err == -EACCES || (unit && (*d->root || !unit_is_active(unit))))
+	/* a service that fails is reported; of one of another machine there is no process */
+	if (d->err == -EACCES || (unit && (*d->root || !unit_is_active(unit)) &&
+	                          (unit_is_active(unit) || unit_is_enabled(d, unit->id))))
 		return;
 	report_add(&d->found, BOARD_MISSING, "owsd %s does not run: %s", d->instance,
 	           d->err && d->err != -ENOENT ? strerror(-d->err) : "it has no heartbeat");
-	if (unit)
+	if (unit_is_active(unit))
 		report_remedy(&d->found, "sudo systemctl restart owsd@%s", d->instance);
+	else if (face_is_installed(d->root, &service))
+		report_remedy(&d->found, "sudo systemctl enable --now owsd@%s", d->instance);
 	else
 		report_remedy(&d->found, "owsd -n %s -c %s    # or install its service",
 		              d->instance, d->file);
