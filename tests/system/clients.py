@@ -209,8 +209,9 @@ def _install(wanted, packages):
         for command in ([sys.executable, "-m", "venv", where],
                         [f"{where}/bin/python", "-m", "pip", "--quiet", "--disable-pip-version-check",
                          "--retries", "1", "--timeout", "10", "install", "--require-hashes",
-                         "--no-deps", "--only-binary", ":all:", "--target", str(fresh), "-r", str(wanted)]):
-            done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+                         "--no-deps", "--no-compile", "--only-binary", ":all:",
+                         "--target", str(fresh), "-r", str(wanted)]):
+            done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
             if done.returncode:
                 shutil.rmtree(fresh)
                 last = ((done.stderr or done.stdout).strip().splitlines() or ["?"])[-1]

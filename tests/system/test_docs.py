@@ -6,7 +6,8 @@ sh, console  run by a shell that finds the programs of standin.py and a few harm
              others; absolute paths lie below a root of the test's own. In a console block the
              output is compared too: numbers and "..." stand for anything
 c, cpp       compiled without a warning; whole programs are run, faces beside an owsd
-python       run
+python       run; what needs pandas or DuckDB is compiled, and test_history_readers.py runs it
+sql          whole statements; test_history_readers.py runs them
 rio, sim     read by owsd --check; by owsctl dir
 json         parsed
 conf         owfs.conf: keys that the genuine owserver knows
@@ -25,6 +26,7 @@ import os
 import re
 import shutil
 import socket
+import sqlite3
 import struct
 import subprocess
 import sys
@@ -263,7 +265,14 @@ def do_cpp(stage, text):
         stage.program([program])
 
 
+def do_sql(_stage, text):
+    assert sqlite3.complete_statement(text), "no whole statement"
+
+
 def do_python(stage, text):
+    if re.search("^import (duckdb|pandas)$", text, re.M):
+        compile(text, "the page", "exec")
+        return
     stage.program([sys.executable, stage.scene.file("snippet.py", stage.own(text))])
 
 
@@ -479,6 +488,7 @@ PLANTED = [
     ("```python\nimport ows\nows.Ows(\"OWS\").fetch(\"room1\")\n```", "attribute 'fetch'"),
     ("```rio\nOwsDrv {\n  Target \"localhost\"\n}\n```", "unknown key Target"),
     ("```sim\nchip DS9999 0x18\n```", "DS9999"),
+    ("```sql\nselect 1\n```", "no whole statement"),
     ("```udev\nSUBSYSTEM==\"w1\"\n```", "has no SUBSYSTEM"),
     ("```json\n{1}\n```", "property name"),
     ("```text\nowsctl lst\n```", "nobody runs: owsctl lst"),

@@ -20,19 +20,6 @@
 #define LOG_ROOM (64u << 20) /* on the disk */
 #define LOG_PATH 400
 
-#define ISO(id) "strftime('%Y-%m-%dT%H:%M:%fZ', (" id " + date) / 1000000.0, 'unixepoch')"
-#define SESSION(id) \
-	"join session on session.start = " \
-	"(select max(start) from session where start <= " id ")"
-/* Rows with t.id, least and so on; the number of their minute or hour, and their signal. */
-#define ROLLUP_VIEW(name, rows, us, number, signals) \
-	"create view trend_" name " as select " ISO( \
-		number \
-		" * " us) " as time, name, least," \
-			  " most, mean, last, unit, good, known, count, q.text as quality, w.text as worst" \
-			  " from " rows " t join signal on signal.signal = " signals " & 65535" \
-			  " left join quality q on q.quality = t.quality left join quality w on w.quality = t.worst" \
-			  " " SESSION(number " * " us " + " us " - 1") ";"
 /* real: a whole number takes a byte or two of the file, and a query that divides gets a fraction */
 #define ROLLUP(name) \
 	"create table " name " (id integer primary key, least real, most real, mean real," \
@@ -42,45 +29,7 @@
 #define WORDS(name) \
 	"create table if not exists " name " (" name " integer primary key, text text not null);"
 
-/* clang-format off */
-#define EVENTS \
-	WORDS("alarm_kind") WORDS("alarm_event") WORDS("command_reason") \
-	"create view trend_event as select " ISO("event.time") " as time," \
-	" case event.kind when 6 then 'clock' when 7 then 'command' else 'alarm' end as kind," \
-	" case when event.kind <> 6 then coalesce(c.text, ltrim(coalesce(k.text, '') || ' ' || a.text))" \
-	" when value <> 0 then 'set' when value = 0 then 'trust changed' end as what, name, value," \
-	" before, case event.kind when 6 then 's' else unit end as unit, q.text as quality, event.text, program, person" \
-	" from event left join signal using (signal) left join quality q" \
-	" on q.quality = event.quality left join command_reason c" \
-	" on event.kind = 7 and command_reason = event.reason left join alarm_kind k" \
-	" on event.kind = 8 and alarm_kind = event.reason left join alarm_event a" \
-	" on event.kind = 8 and alarm_event = event.event " SESSION("event.id") ";"
-/* clang-format on */
-
-/*
- * An hour of minutes as rows, as src/history/file/minutes.h has them: what is missing at the end of
- * one is what it mostly is. A row of a sum has a count.
- */
-/* clang-format off */
-#define FIELD(at, name) " json_extract(value, '$[" at "]') as " name
-#define VALUE(field) " (base + step * coalesce(" field ", last)) / 1e6,"
-#define MINUTE_ROWS \
-	"(select id, least, most, mean, last, good, known, count, quality, worst" \
-	" from minute where count is not null union all select" \
-	" ((id >> 16) - 59 + minute) << 16 | (id & 65535)," \
-	VALUE("least") VALUE("most") VALUE("mean / 1000.0") VALUE("last") \
-	" coalesce(good / 1e6, 60.0), coalesce(known / 1e6, 60.0), count," \
-	" nullif(coalesce(quality, 192), -1), nullif(coalesce(worst, 192), -1) from (select" \
-	" minute.id as id, json_extract(minutes, '$[0]') as base," \
-	" json_extract(minutes, '$[1]') as step," \
-	FIELD("0", "minute,") FIELD("1", "count,") FIELD("2", "last,") FIELD("3", "least,") \
-	FIELD("4", "most,") FIELD("5", "mean,") FIELD("6", "good,") FIELD("7", "known,") \
-	FIELD("8", "quality,") FIELD("9", "worst") \
-	" from minute, json_each(minutes) where key > 1))"
-/* clang-format on */
-#define HOURS \
-	ROLLUP("hour") \
-	ROLLUP_VIEW("hour", "hour", "3600000000", SCHEMA_HOUR("t.id"), "(t.id >> 3)")
+#define EVENT_WORDS WORDS("alarm_kind") WORDS("alarm_event") WORDS("command_reason")
 
 /* An empty file becomes one of version 3. */
 #define CREATED 3
@@ -100,31 +49,22 @@ static const char create[] =
 	" before, text text, serial integer, uid integer, pid integer, program text, person text);"
 	"create index event_time on event (time);"
 	WORDS("quality") WORDS("reason") /* of gaps */
-	/* a number that is not good could be believed */
-	"create view trend as select " ISO("raw.id") " as time, name,"
-	" case when raw.quality >= 192 then value end as value, unit, q.text as quality"
-	" from raw join signal using (signal) left join quality q on q.quality = raw.quality "
-	SESSION("raw.id")
-	" union all select " ISO("gap.start") ", coalesce(name, '*'), null, unit, r.text"
-	" from gap left join signal using (signal) left join reason r on r.reason = gap.reason "
-	SESSION("gap.start") ";"
-	ROLLUP("minute")
-	HOURS EVENTS;
+	ROLLUP("minute") ROLLUP("hour") EVENT_WORDS;
 /* clang-format on */
 
-/* Step i makes a file of version i one of version i + 1. */
+/* Step i makes tables of version i those of version i + 1. The views are made anew after all. */
 static const char *const steps[HISTORY_SCHEMA] = {
 	/* an hour had the id number * 65536 + signal */
-	[1] = "drop view trend_hour; alter table hour rename to hours; " HOURS
-	      "insert into hour select (((id >> 19 << 16) | (id & 65535)) << 3) | ((id >> 16) & 7), least,"
-	      " most, mean, last, good, known, count, quality, worst from hours;"
-	      "drop table hours;",
+	[1] = "alter table hour rename to hours; " ROLLUP(
+		"hour") "insert into hour select (((id >> 19 << 16) | (id & 65535)) << 3) | ((id >> 16) & 7), least,"
+			" most, mean, last, good, known, count, quality, worst from hours;"
+			"drop table hours;",
 	/* of an event there was no word for what it is */
-	[2] = "drop view trend_event; " EVENTS,
+	[2] = EVENT_WORDS,
 	/*
-         * A signal was its name: the recorder gives it an identity when it finds it by that. former
-         * has the names before, as " hall attic ".
-         */
+	 * A signal was its name: the recorder gives it an identity when it finds it by that. former
+	 * has the names before, as " hall attic ".
+	 */
 	[3] = "alter table signal add column identity text;"
 	      "alter table signal add column former text not null default ' ';"
 	      "create unique index signal_identity on signal (identity);",
@@ -132,15 +72,12 @@ static const char *const steps[HISTORY_SCHEMA] = {
 	 * Each minute had a row of its own: these stay. Those of the hour under way are made again,
 	 * as one text with the others of that hour.
 	 */
-	[4] = "drop view if exists trend_minute; alter table minute add column minutes text;"
-	      "drop view trend_event; " EVENTS
+	[4] = "alter table minute add column minutes text;"
 	      "delete from minute where id >= (coalesce((" SCHEMA_HOURS_END
-	      "), 0) / 60000000) << 16;" ROLLUP_VIEW("minute", MINUTE_ROWS, "60000000",
-                                                     "(t.id >> 16)", "t.id"),
+	      "), 0) / 60000000) << 16;",
+	/* no view had days */
+	[5] = "",
 };
-
-_Static_assert(OWS_HISTORY_CLOCK == 6 && OWS_HISTORY_COMMAND == 7 && OWS_HISTORY_ALARM == 8,
-               "trend_event has these numbers");
 
 static const struct {
 	const char *insert;
@@ -178,14 +115,18 @@ static int migrate(sqlite3 *db, int64_t version)
 {
 	int err = sql_exec(db, "begin immediate");
 
+	if (!err)
+		err = views_drop(db);
 	if (!err && version == 0)
 		err = sql_exec(db, create);
 	for (int64_t i = version ? version : CREATED; !err && i < HISTORY_SCHEMA; i++)
 		err = sql_exec(db, steps[i]);
 	if (!err)
+		err = views_make(db);
+	if (!err)
 		err = add_words(db);
 	if (!err)
-		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 5");
+		err = sql_exec(db, "pragma application_id = 1870099300; pragma user_version = 6");
 	if (!err)
 		err = sql_exec(db, "commit");
 	if (err)
@@ -193,7 +134,7 @@ static int migrate(sqlite3 *db, int64_t version)
 	return err;
 }
 
-_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 5,
+_Static_assert(HISTORY_APPLICATION == 1870099300 && HISTORY_SCHEMA == 6,
                "migrate() says these in words");
 _Static_assert(LOG_BYTES == 4194304, "schema_check() says this in words");
 

@@ -24,15 +24,17 @@
  *              its minutes as one text (minutes, src/history/file/minutes.h), and no sum of its
  *              own; an older file, and a signal whose values do not fit, has a row for each minute.
  *              A minute in which nothing came is in neither: the value held.
- *     trend, trend_minute, trend_hour, trend_event  the same with names, ISO times and words
+ *     trend and other views  the same with names, ISO times and words: src/history/file/views.h
  */
 #pragma once
 
 #include <sqlite3.h>
 #include <stdint.h>
 
+#include "src/history/file/views.h"
+
 #define HISTORY_FILE "history.sqlite"
-#define HISTORY_SCHEMA 5               /* user_version */
+#define HISTORY_SCHEMA 6               /* user_version */
 #define HISTORY_SCHEMA_READ 2          /* what a reader needs is the same since then */
 #define HISTORY_SCHEMA_IDENTITY 4      /* since then a signal has one */
 #define HISTORY_APPLICATION 0x6f777364 /* application_id: "owsd" */
@@ -56,8 +58,7 @@ static inline int64_t schema_hour(int64_t hour, uint32_t signal)
 {
 	return ((hour >> 3) << 16 | signal) << 3 | (hour & 7);
 }
-/* The number of an hour, and the id at which the hours that have rows end. */
-#define SCHEMA_HOUR(id) "((" id " >> 19 << 3) + (" id " & 7))"
+/* The id at which the hours that have rows end. */
 #define SCHEMA_HOURS_END \
 	"select (max(" SCHEMA_HOUR("id") ") + 1) * 3600000000 from hour" \
 					 " where id >= (select max(id) >> 19 << 19 from hour)"

@@ -120,16 +120,21 @@ static void test_a_reader_of_sql_sees_names_units_times_and_words(void)
 	past_begin(&past, 5 * PAST_S, PAST_NOON, true);
 	past_room(&past, 7 * PAST_S, 21.5);
 	history_writer_value(past.writer, PAST_ROOM, 8 * PAST_S, OWS_Q_DEVICE, 0, NULL, 0);
+	past_lamp(&past, 9 * PAST_S, 1);
 	past_end(&past, 20 * PAST_S);
 	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from trend where name = 'room'"
 	                                           " and value = 21.5 and unit = '°C'"
 	                                           " and quality = 'good'"
 	                                           " and time = '2024-10-04T12:00:07.000Z'"));
 	/* a bad value is never a number that could be believed */
-	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from trend where name = 'room'"
-	                                           " and value is null and quality <> 'good'"));
-	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select count(*) from trend"
+	TEST_ASSERT_EQUAL_INT64(1,
+	                        past_ask(&past, "select count(*) from trend where name = 'room'"
+	                                        " and value is null and quality = 'device error'"));
+	/* what ends all signals ends each, behind its last value */
+	TEST_ASSERT_EQUAL_INT64(2, past_ask(&past, "select count(distinct name) from trend"
 	                                           " where quality = 'recorder stopped'"));
+	TEST_ASSERT_EQUAL_INT64(1, past_ask(&past, "select quality = 'recorder stopped' from trend"
+	                                           " where name = 'room' order by id desc"));
 }
 
 static void check_words(const char *kind, const char *what)
@@ -1020,7 +1025,7 @@ static void test_events_of_the_second_version_get_words_and_its_readers_need_non
 	struct ows_history *h;
 
 	record_events();
-	sql("drop view trend_event; drop table alarm_kind; drop table alarm_event;"
+	sql("drop view trend_alarm; drop view trend_event; drop table alarm_kind; drop table alarm_event;"
 	    "drop table command_reason; create view trend_event as select * from event;" WITHOUT_IDENTITY
 	    "pragma user_version = 2");
 	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
