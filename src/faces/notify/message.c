@@ -78,7 +78,9 @@ static void add_since(struct entry *entry, const char *word, int64_t since_ns,
 
 	entry->since_ns = since_ns;
 	add(entry, "; %s ", word);
-	entry->at = (unsigned)strlen(entry->text);
+	/* as make_line() leaves what stands before it: what is not UTF-8 becomes shorter */
+	entry->at = (unsigned)printable(entry->text, strlen(entry->text));
+	entry->text[entry->at] = '\0';
 	add(entry, "%s", moment(now, since_ns, since));
 }
 

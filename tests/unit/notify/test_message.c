@@ -173,6 +173,20 @@ static void test_when_it_is_told_its_time_is_that_of_the_clock_as_it_is_then(voi
 	TEST_ASSERT_NOT_NULL(strstr(entry.text, "; since 2023-11-14T23:13:19; In the cellar"));
 }
 
+/* A character that would turn a line around is three bytes, and the "?" in its place is one. */
+static void test_its_time_stands_in_its_place_behind_odd_characters_too(void)
+{
+	struct when set = now;
+
+	set.wall += 3600 * NS_PER_S;
+	message_bad(&entry, &info, 400 * NS_PER_S, "\xe2\x80\xae\xff\xe2\x80\xa8 no\n answer",
+	            "Look there.", &now);
+	message_renew(&entry, &set);
+	TEST_ASSERT_EQUAL_STRING("freezer bad: ??? no? answer; for 10m; since 2023-11-14T23:03:20; "
+	                         "In the cellar; Look there.",
+	                         entry.text);
+}
+
 static void test_what_ended_before_it_is_told_says_so_once(void)
 {
 	message_alarm(&entry, &info, &low, &now);
@@ -356,6 +370,7 @@ int main(void)
 	RUN_TEST(test_an_output_that_reads_otherwise_has_both_values);
 	RUN_TEST(test_a_value_that_stays_bad_has_its_reason_and_a_remedy);
 	RUN_TEST(test_when_it_is_told_its_time_is_that_of_the_clock_as_it_is_then);
+	RUN_TEST(test_its_time_stands_in_its_place_behind_odd_characters_too);
 	RUN_TEST(test_what_ended_before_it_is_told_says_so_once);
 	RUN_TEST(test_the_longest_line_keeps_room_for_its_end);
 	RUN_TEST(test_an_escalation_says_for_how_long);
