@@ -108,57 +108,91 @@ static bool put_members(struct stream *s, const char *control)
 	return put;
 }
 
-static bool put_control(struct stream *s, const struct row *row)
+/* What meta has: the title last, which has no topic of its own. */
+static void put_meta(const struct stream *s, const struct row *row, struct json *json)
 {
 	const struct ows_info *info = &row->info;
 	bool number = info->type != OWS_BOOL && info->type != OWS_STRING;
-	struct json json;
 
-	stream_message(s, &json);
-	json_object(&json, NULL);
-	json_string(&json, "type",
+	json_string(json, "type",
 	            info->type == OWS_BOOL     ? "switch"
 	            : info->type == OWS_STRING ? "text"
 	                                       : "value");
 	if (number && *unit_of(row))
-		json_string(&json, "units", unit_of(row));
+		json_string(json, "units", unit_of(row));
 	if (number) {
-		put_number(&json, "min", info->min);
-		put_number(&json, "max", info->max);
-		put_number(&json, "precision",
+		put_number(json, "min", info->min);
+		put_number(json, "max", info->max);
+		put_number(json, "precision",
 		           !value_is_float((enum ows_type)info->type) ? 1
 		           : info->decimals >= 0                      ? pow(10, -info->decimals)
 		                                                      : NAN);
 	}
-	json_int(&json, "order", row - s->rows + 1);
-	json_bool(&json, "readonly", !s->write || !info->output);
-	put_title(&json, *info->description ? info->description : info->name, row->simulated);
+	json_int(json, "order", row - s->rows + 1);
+	json_bool(json, "readonly", !s->write || !info->output);
+	put_title(json, *info->description ? info->description : info->name, row->simulated);
+}
+
+static bool put_control(struct stream *s, const struct row *row)
+{
+	struct json json;
+
+	stream_message(s, &json);
+	json_object(&json, NULL);
+	put_meta(s, row, &json);
 	json_object_end(&json);
 	return put_below_row(s, row, META, NULL) && put_members(s, row->topic);
 }
 
 /* A control beside that of the signal: does its limit alarm stand? */
+static void put_alarm_meta(const struct stream *s, const struct row *row, struct json *json)
+{
+	char title[320];
+
+	snprintf(title, sizeof(title), "%.300s: alarm",
+	         *row->info.description ? row->info.description : row->info.name);
+	json_string(json, "type", "alarm");
+	json_int(json, "order", s->count + (row - s->rows) + 1);
+	json_bool(json, "readonly", true);
+	put_title(json, title, false);
+}
+
 static bool put_alarm_control(struct stream *s, const struct row *row)
 {
-	char topic[TOPIC_SIZE], title[320];
+	char topic[TOPIC_SIZE];
 	struct json json;
 
 	if (!row->alarms)
 		return true;
-	snprintf(title, sizeof(title), "%.300s: alarm",
-	         *row->info.description ? row->info.description : row->info.name);
 	stream_message(s, &json);
 	json_object(&json, NULL);
-	json_string(&json, "type", "alarm");
-	json_int(&json, "order", s->count + (row - s->rows) + 1);
-	json_bool(&json, "readonly", true);
-	put_title(&json, title, false);
+	put_alarm_meta(s, row, &json);
 	json_object_end(&json);
 	snprintf(topic, sizeof(topic), "%s" ALARM "/" META, row->topic);
 	if (!stream_put(s, topic, true))
 		return false;
 	topic[strlen(topic) - strlen("/" META)] = '\0';
 	return put_members(s, topic);
+}
+
+/* Has put_members() a topic for that member of meta? */
+static bool has_member(const struct stream *s, const struct row *row, bool alarm, const char *key)
+{
+	char member[32], *text;
+	const char *found;
+	struct json json;
+	size_t len;
+	bool has;
+
+	if (!json_start(&json, &text, &len))
+		return true;
+	(alarm ? put_alarm_meta : put_meta)(s, row, &json);
+	json_finish(&json);
+	snprintf(member, sizeof(member), "\"%.24s\":", key);
+	found = strstr(text, member);
+	has = found && found < strstr(text, ",\"title\":");
+	free(text);
+	return has;
 }
 
 static bool put_device(struct stream *s)
@@ -260,20 +294,20 @@ static bool writes(const struct stream *s, const char *topic, const char *below)
 {
 	const char *level = strchr(below, '/'), *end = level ? strchr(level + 1, '/') : NULL;
 	size_t len = end ? (size_t)(end - topic) : strlen(topic), tail = strlen(ALARM);
+	bool alarm = len > tail && memcmp(topic + len - tail, ALARM, tail) == 0;
 	const struct row *row;
 
 	if (!strcmp(below, META) || !strcmp(below, ERROR))
 		return true;
 	if (!strncmp(below, META "/", strlen(META "/")))
-		return s->old_readers;
-	/* a member of meta, behind the topic of a control */
-	if (end && !strncmp(end, "/" META "/", strlen("/" META "/")) &&
-	    strcmp(end, "/" ERROR) != 0 && !s->old_readers)
+		return s->old_readers && !strcmp(below, META "/name");
+	row = stream_row(s, topic, alarm ? len - tail : len);
+	if (!row || (alarm && !row->alarms))
 		return false;
-	if (len <= tail || memcmp(topic + len - tail, ALARM, tail) != 0)
-		return stream_row(s, topic, len);
-	row = stream_row(s, topic, len - tail);
-	return row && row->alarms;
+	/* a member of meta, behind the topic of a control */
+	return !end || strncmp(end, "/" META "/", strlen("/" META "/")) != 0 ||
+	       !strcmp(end, "/" ERROR) ||
+	       (s->old_readers && has_member(s, row, alarm, end + strlen("/" META "/")));
 }
 
 static const char *const places[] = {

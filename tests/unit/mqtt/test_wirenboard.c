@@ -69,6 +69,15 @@ static void test_members_of_meta_have_topics_of_their_own_if_that_is_wanted(void
 	profiles_kept(&p.s, CONTROL "level/meta/type", "value");
 	profiles_kept(&p.s, AT "meta/name", "owsd pi");
 	TEST_ASSERT_EQUAL_STRING("", published_pump(&p));
+	/* and no longer: a member that the control has no more, or never had */
+	profiles_kept(&p.s, CONTROL "level/meta/units", "V");
+	TEST_ASSERT_EQUAL_STRING(CONTROL "level/meta/units \n", published_pump(&p));
+	profiles_kept(&p.s, CONTROL "lamp/meta/precision", "1");
+	TEST_ASSERT_EQUAL_STRING(CONTROL "lamp/meta/precision \n", published_pump(&p));
+	profiles_kept(&p.s, CONTROL "level/meta/title", "level");
+	TEST_ASSERT_EQUAL_STRING(CONTROL "level/meta/title \n", published_pump(&p));
+	profiles_kept(&p.s, AT "meta/driver", "owsd");
+	TEST_ASSERT_EQUAL_STRING(AT "meta/driver \n", published_pump(&p));
 	p.s.old_readers = false;
 	profiles_kept(&p.s, CONTROL "level/meta/type", "value");
 	TEST_ASSERT_EQUAL_STRING(CONTROL "level/meta/type \n", published_pump(&p));
