@@ -38,7 +38,7 @@ struct replay_point missed_point(const struct missed *m, int64_t ns)
 
 /* --- What is kept ---------------------------------------------------------------------------- */
 
-#define KEPT_VERSION 3
+#define KEPT_VERSION 4
 
 static void complain(struct missed *m, const char *what, int err)
 {
@@ -93,6 +93,7 @@ void missed_keep(struct missed *m, int64_t least_ns, int64_t now_ns)
 	}
 	fprintf(f, "owsd %d %016" PRIx64 " %d", KEPT_VERSION, m->key, m->count);
 	print_point(f, &m->reached);
+	print_point(f, &m->resumed);
 	for (int i = 0; i < m->count; i++) {
 		print_point(f, &m->stretches[i].from);
 		print_point(f, &m->stretches[i].until);
@@ -168,7 +169,8 @@ static bool read_kept(struct missed *m)
 	else if (found == 3 && key != m->key)
 		fault = "of another peer";
 	good = found == 3 && version == KEPT_VERSION && key == m->key && old.count >= 0 &&
-	       old.count <= MISSED_STRETCHES && scan_point(f, &old.reached);
+	       old.count <= MISSED_STRETCHES && scan_point(f, &old.reached) &&
+	       scan_point(f, &old.resumed);
 	for (int i = 0; good && i < old.count; i++)
 		good = scan_point(f, &old.stretches[i].from) &&
 		       scan_point(f, &old.stretches[i].until);

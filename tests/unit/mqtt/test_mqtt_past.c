@@ -292,7 +292,7 @@ static int64_t kept_us(void)
 	int count;
 
 	TEST_ASSERT_NOT_NULL(f);
-	TEST_ASSERT_EQUAL_INT(4, fscanf(f, "owsd 3 %llx %d %lld %lld", &key, &count, &boot, &us));
+	TEST_ASSERT_EQUAL_INT(4, fscanf(f, "owsd 4 %llx %d %lld %lld", &key, &count, &boot, &us));
 	fclose(f);
 	TEST_ASSERT_EQUAL_UINT64(KEY, key);
 	TEST_ASSERT_EQUAL_INT(0, count);
@@ -321,18 +321,44 @@ static void test_up_to_where_the_broker_has_all_is_kept_over_a_restart(void)
 	TEST_ASSERT_EQUAL_STRING("room=21 ", again);
 }
 
+/* The outage by the kill begins where the one before has ended: no row is of both. */
+static void test_what_a_kill_left_half_sent_is_sent_again_once(void)
+{
+	record();
+	room(now_ns, 20);
+	written(now_ns + S);
+	begin();
+	settle();
+	past_lost(&past);
+	again[0] = '\0';
+	room(now_ns + 20 * S, 21);
+	room(now_ns + 60 * S, 22);
+	now_ns += 60 * S;
+	pump(1);
+	written(now_ns);
+	for (int i = 0; i < 3 && !strstr(again, "room=22"); i++)
+		pump(1);
+	TEST_ASSERT_EQUAL_STRING("room=21 room=22 ", again);
+	again[0] = '\0';
+	TEST_ASSERT_EQUAL_INT(0, stream_make(&p.s, p.h));
+	p.s.announced = true;
+	begin();
+	settle();
+	TEST_ASSERT_EQUAL_STRING("room=21 room=22 ", again);
+}
+
 static void test_what_was_kept_for_another_broker_or_is_damaged_does_not_count(void)
 {
 	static const char *const files[] = {
-		"owsd 3 0000000000000008 0 1 5 6 end\n", /* another key */
-		"owsd 2 0000000000000007 0 1 5 6 end\n", /* another version */
-		"owsd 3 0000000000000007 0 1 5 6\n",     /* cut */
-		"owsd 3 0000000000000007 1 1 5 6 end\n", /* a stretch is missing */
-		"owsd 3 0000000000000007 17 1 5 6 end\n",
-		"owsd 3 0000000000000007 -1 1 5 6 end\n",
+		"owsd 4 0000000000000008 0 1 5 6 1 5 6 end\n", /* another key */
+		"owsd 2 0000000000000007 0 1 5 6 1 5 6 end\n", /* another version */
+		"owsd 4 0000000000000007 0 1 5 6 1 5 6\n",     /* cut */
+		"owsd 4 0000000000000007 1 1 5 6 1 5 6 end\n", /* a stretch is missing */
+		"owsd 4 0000000000000007 17 1 5 6 1 5 6 end\n",
+		"owsd 4 0000000000000007 -1 1 5 6 1 5 6 end\n",
 		"",
 	};
-	static const char good[] = "owsd 3 0000000000000007 1 1 5 6 1 2 3 1 4 5 end\n";
+	static const char good[] = "owsd 4 0000000000000007 1 1 5 6 1 4 5 1 2 3 1 4 5 end\n";
 
 	record();
 	written(now_ns + S);
@@ -390,6 +416,7 @@ int main(void)
 	RUN_TEST(test_without_a_right_clock_or_a_birth_nothing_goes_out);
 	RUN_TEST(test_a_profile_that_shows_only_what_is_does_nothing);
 	RUN_TEST(test_up_to_where_the_broker_has_all_is_kept_over_a_restart);
+	RUN_TEST(test_what_a_kill_left_half_sent_is_sent_again_once);
 	RUN_TEST(test_what_was_kept_for_another_broker_or_is_damaged_does_not_count);
 	RUN_TEST(test_more_outages_than_stretches_are_one_at_the_end);
 	return UNITY_END();
