@@ -3,9 +3,11 @@
 """No lost minute: what a broker of Sparkplug misses comes from the recorder's file, after the live
 values, with the time of measurement."""
 
+import collections
 import contextlib
 import itertools
 import json
+import random
 import sqlite3
 import time
 
@@ -142,6 +144,44 @@ def test_a_face_that_is_killed_in_the_middle_goes_on_where_the_broker_was(scene)
     plant.house.face = plant.house.start(plant.env)
     plant.turn(9)
     plant.complete()
+
+
+def certain(plant):
+    """Up to then the broker had all, as was written down: 2 s before that nothing comes again."""
+    numbers = plant.reached.read_text().split()[4:-1]
+    walls = [int(number) / 1e6 for number in numbers[2::3]]
+    return min(walls[:1] + walls[2::2]) - 2.1
+
+
+def births(plant):
+    return [verb for verb, *_ in settled(lambda: list(plant.host.look()))].count("nbirth")
+
+
+def test_after_kills_at_any_moment_only_what_was_not_certain_comes_again(scene):
+    plant, chance = Plant(scene), random.Random(20)
+    least = {}  # by the number of the session: its history begins after that
+    plant.house.face.kill()
+    for value in range(1, 151):
+        if not plant.house.face.running():
+            least[births(plant)] = certain(plant)  # of one that is killed before its birth the next one's counts
+            plant.house.face = plant.house.start(plant.env)
+            due = time.time() + chance.uniform(0.05, 4)
+        plant.turn(value)
+        time.sleep(0.08)  # of changes that are less than 50 ms apart only the newest goes out
+        if time.time() > due:
+            plant.house.face.kill()
+    if not plant.house.face.running():
+        least[births(plant)] = certain(plant)
+        plant.house.face = plant.house.start(plant.env)
+    plant.complete()
+    verbs, came = [verb for verb, *_ in plant.host.heard], collections.Counter()
+    for session, moment in least.items():
+        rows = [m for m in plant.metrics() if m[3] and verbs[:m[0] + 1].count("nbirth") == session + 1]
+        assert len({m[1] for m in rows}) == len(rows), (session, rows)  # once in one session
+        assert not [m for m in rows if m[2] < moment], (session, moment, rows)
+        came.update(m[1] for m in rows)
+    print(f"# figure: after {len(least)} kills {len(came)} of 150 values came from the history, {max(came.values())} times at most")
+    assert len(least) > 5, least
 
 
 def test_times_are_right_though_the_clock_was_wrong_when_they_were_recorded(scene):
