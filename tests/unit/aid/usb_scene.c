@@ -74,8 +74,11 @@ static int port_transfer(struct usb_port *port, uint8_t endpoint, uint8_t *bytes
 
 	if (err)
 		return err;
-	if (state)
-		return answer(sim_ds2490_interrupt(&stick->chip, bytes, n, sticks.host.now));
+	if (state) {
+		int len = answer(sim_ds2490_interrupt(&stick->chip, bytes, n, sticks.host.now));
+
+		return stick->mute && len > DS2490_STATE ? DS2490_STATE : len;
+	}
 	if (endpoint == USB_IN)
 		return bulk_in(stick, bytes, n);
 	return answer(sim_ds2490_bulk_out(&stick->chip, bytes, n, sticks.host.now));

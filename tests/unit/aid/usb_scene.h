@@ -15,6 +15,7 @@ struct usb_stick {
 	bool plugged, open;
 	bool kernel; /* the kernel's driver has it */
 	bool deaf;   /* a reset by its hub does not help */
+	bool mute;   /* the results of its commands are lost */
 	int refuses; /* what opening it returns; 0: it opens */
 	unsigned opens, resets;
 };

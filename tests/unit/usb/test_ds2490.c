@@ -172,6 +172,25 @@ static void test_ids_that_are_not_there_are_decided_as_a_slot_by_slot_search_doe
 	TEST_ASSERT_FALSE(away[3]);
 }
 
+/* Of what the search's macro does not say, nothing is concluded. */
+static void test_a_path_says_of_another_branch_only_what_is_known(void)
+{
+	uint8_t near[8] = {0x28, 0, 0, 0, 0, 0, 0x01}, absent[8];
+	const uint8_t *roms[2] = {near};
+	bool away[2] = {false};
+
+	sticks_start(house);
+	/* it goes the way of t, where u is on the other branch, and leaves it at the next bit */
+	roms[1] = sim_net_slave(&sticks.stick[0].net, "u")->rom;
+	TEST_ASSERT_EQUAL_INT(0, search_among(sticks.wire, roms, away, 2, 64));
+	TEST_ASSERT_TRUE(away[0]);
+	TEST_ASSERT_FALSE(away[1]);
+	/* it differs from t in one bit, where t alone is left and has the 1 */
+	memcpy(absent, sim_net_slave(&sticks.stick[0].net, "t")->rom, 8);
+	absent[6] = 0xE1;
+	TEST_ASSERT_EQUAL_INT(0, search_verify(sticks.wire, absent, false));
+}
+
 static void test_devices_that_leave_in_the_middle_of_a_search_are_an_error(void)
 {
 	uint8_t rom[8] = {0}, conflict[8];
@@ -238,6 +257,73 @@ static void test_what_is_left_in_the_buffers_is_an_error_once_and_is_cleared(voi
 		sticks_check("t");
 	}
 	TEST_ASSERT_EQUAL_UINT(5, chip->state[DS2490_AT_SLEW]);
+	/* at once, before anything is written; and in a slot, which no reset precedes */
+	chip->out.count = 3;
+	TEST_ASSERT_EQUAL_INT(-EIO, part_reset(sticks.wire));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(sticks.wire));
+	chip->in.count = 1;
+	TEST_ASSERT_EQUAL_INT(-EIO, link_slot(sticks.wire, true, LINK_IDLE));
+}
+
+static void test_after_an_error_a_transaction_does_not_go_on(void)
+{
+	uint8_t byte = 0xBE;
+	uint64_t transfers;
+
+	sticks_start(house);
+	chip->in.count = 1;
+	TEST_ASSERT_EQUAL_INT(-EIO, part_reset(sticks.wire));
+	transfers = sticks.transfers;
+	TEST_ASSERT_EQUAL_INT(-EIO, part_write(sticks.wire, &byte, 1, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(-EIO, link_slot(sticks.wire, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_UINT64(transfers, sticks.transfers);
+	sticks_check("t");
+}
+
+static void short_in(int64_t ns)
+{
+	struct sim_net *net = &sticks.stick[0].net;
+	struct sim_event event = {.what = SIM_SHORT, .on = true};
+
+	event.at_ns = net->time + ns;
+	TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(net, &event));
+	event.on = false;
+	event.at_ns += 200 * HOST_MS;
+	TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(net, &event));
+}
+
+static void test_what_did_not_reach_the_wire_is_an_error(void)
+{
+	uint8_t out[2] = {0xCC, 0xBE}, in[9];
+	const struct link_part strong = {
+		.reset = true, .out = out, .after = LINK_STRONG, .out_n = 1};
+
+	sticks_start(house);
+	for (int64_t ms = 3; ms < 9; ms++) {
+		short_in(ms * HOST_MS);
+		TEST_ASSERT_EQUAL_INT(-EIO, sticks_scratchpad("t", in));
+		sticks.host.now += HOST_S;
+		sticks_check("t");
+	}
+	TEST_ASSERT_EQUAL_INT(1, part_reset(sticks.wire));
+	short_in(2 * HOST_MS + HOST_MS / 2);
+	TEST_ASSERT_EQUAL_INT(-EIO, sticks.wire->ops->run(sticks.wire, &strong));
+	sticks.host.now += HOST_S;
+	sticks_check("t");
+}
+
+/* Where there is none, that it stays idle is enough; a chip that has given one gives it always. */
+static void test_a_reset_without_a_result_is_no_presence(void)
+{
+	stick_add(house);
+	sticks.stick[0].mute = true;
+	sticks_make("");
+	TEST_ASSERT_EQUAL_INT(0, sticks_try());
+	sticks_check("t");
+	sticks.stick[0].mute = false;
+	sticks_check("t");
+	sticks.stick[0].mute = true;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, part_reset(sticks.wire));
 }
 
 static void test_a_halted_chip_goes_on_and_one_that_lost_a_command_is_reset(void)
@@ -249,7 +335,7 @@ static void test_a_halted_chip_goes_on_and_one_that_lost_a_command_is_reset(void
 	TEST_ASSERT_NOT_EQUAL_INT(0, sticks_scratchpad("t", in));
 	sticks_check("t");
 	chip->ep0_full = true;
-	TEST_ASSERT_NOT_EQUAL_INT(0, sticks_scratchpad("t", in));
+	TEST_ASSERT_EQUAL_INT(-EIO, sticks_scratchpad("t", in));
 	sticks_check("t");
 	TEST_ASSERT_GREATER_THAN_UINT64(0, chip->faults.setups_lost);
 	chip->faults.setups_lost = 0; /* of the test */
@@ -397,10 +483,14 @@ int main(void)
 	RUN_TEST(test_the_macro_finds_all_devices_of_a_family_of_an_alarm_or_none);
 	RUN_TEST(test_a_search_for_one_id_says_whether_it_is_there_and_leaves_it_selected);
 	RUN_TEST(test_ids_that_are_not_there_are_decided_as_a_slot_by_slot_search_does);
+	RUN_TEST(test_a_path_says_of_another_branch_only_what_is_known);
 	RUN_TEST(test_devices_that_leave_in_the_middle_of_a_search_are_an_error);
 	RUN_TEST(test_the_strong_pull_up_lasts_until_the_next_call);
 	RUN_TEST(test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up);
 	RUN_TEST(test_what_is_left_in_the_buffers_is_an_error_once_and_is_cleared);
+	RUN_TEST(test_after_an_error_a_transaction_does_not_go_on);
+	RUN_TEST(test_what_did_not_reach_the_wire_is_an_error);
+	RUN_TEST(test_a_reset_without_a_result_is_no_presence);
 	RUN_TEST(test_a_halted_chip_goes_on_and_one_that_lost_a_command_is_reset);
 	RUN_TEST(test_an_adapter_that_has_lost_its_settings_is_noticed);
 	RUN_TEST(test_a_silent_adapter_is_an_error_in_time_and_serves_when_it_is_back);

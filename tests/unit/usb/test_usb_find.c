@@ -84,6 +84,7 @@ static void test_there_may_be_none_no_usb_or_more_than_anybody_has(void)
 static void test_one_that_has_gone_or_gives_no_rights_is_explained(void)
 {
 	const struct usb_place gone = {"1-1.4", "/dev/bus/usb/999/999", ""};
+	const struct usb_place none = {"1-1.4", "/dev/null", ""};
 	struct usb_port *port;
 	char why[256];
 
@@ -93,6 +94,8 @@ static void test_one_that_has_gone_or_gives_no_rights_is_explained(void)
 	TEST_ASSERT_NOT_NULL_MESSAGE(
 		strstr(why, err == -ENODEV ? "USB 1-1.4 is gone" : "libusb-1.0-0-dev"), why);
 	usb_linux.give_back(&gone);
+	TEST_ASSERT_NOT_EQUAL_INT(0, usb_linux.open(&none, &port, why, sizeof(why)));
+	usb_linux.give_back(&none);
 }
 
 int main(void)
