@@ -16,6 +16,7 @@ RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*)) docs/exampl
 
 $(B)/unit/test_usbip: $(B)/tests/kernel/usbip.o
 $(B)/unit/test_tiny_usb: $(B)/tests/kernel/tiny_usb.o
+$(B)/unit/test_vhci: $(B)/tests/kernel/vhci.o $(B)/tests/kernel/usbip.o
 
 $(B)/kernel/simchip: $(B)/tests/kernel/simchip.o $(RIG_FRONT) $(B)/core.a $(B)/with/ld
 	$(call link)
@@ -40,7 +41,7 @@ rig = tests/kernel/boot --time $(KERNEL_TIME) $(if $(OR_SKIP),--or-skip) $(RIG_O
           $(RIG_GUEST:%=--file %) $(1)
 
 # With OR_SKIP=1 a package that cannot be had does not end it: boot then counts the suites as skipped
-test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers
+test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers usb
 test-kernel:
 	@sh board/install-deps build kernel $(if $(OR_SKIP),|| true)
 	@$(MAKE) --no-print-directory kernel-programs

@@ -11,6 +11,7 @@ enum {
 	AT_DIRECTION = 12,
 	AT_ENDPOINT = 16,
 	AT_STATUS = 20,
+	AT_UNLINKED = 20,
 	AT_LENGTH = 24,
 	AT_SETUP = 40,
 };
@@ -37,8 +38,10 @@ int usbip_decode(const uint8_t header[USBIP_HEADER], struct usbip_request *reque
 		return -EPROTO;
 	request->command = (enum usbip_command)command;
 	request->seq = get32(header + AT_SEQ);
-	if (command == USBIP_CMD_UNLINK)
+	if (command == USBIP_CMD_UNLINK) {
+		request->unlinked = get32(header + AT_UNLINKED);
 		return 0;
+	}
 	request->in = get32(header + AT_DIRECTION) == 1;
 	request->endpoint = get32(header + AT_ENDPOINT);
 	request->length = get32(header + AT_LENGTH);

@@ -7,14 +7,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "tests/kernel/usbip.h"
 #include "tests/kernel/vhci.h"
 
 #define ATTACH "/sys/devices/platform/vhci_hcd.0/attach"
 
 enum { DEVICE_ID = 1 << 16 | 2, FULL_SPEED = 2 };
 
-int vhci_plug(unsigned port)
+int vhci_plug(struct vhci *vhci, unsigned port)
 {
 	char line[64];
 	int ends[2], attach, len, err = 0;
@@ -32,10 +31,20 @@ int vhci_plug(unsigned port)
 		close(attach);
 	}
 	close(ends[1]);
-	if (!err)
-		return ends[0];
-	close(ends[0]);
-	return err;
+	if (err) {
+		close(ends[0]);
+		return err;
+	}
+	vhci->fd = ends[0];
+	vhci->count = 0;
+	return 0;
+}
+
+void vhci_unplug(struct vhci *vhci)
+{
+	close(vhci->fd);
+	vhci->fd = -1;
+	vhci->count = 0;
 }
 
 static int get(int fd, uint8_t *data, size_t len)
@@ -70,27 +79,97 @@ static int put(int fd, const uint8_t *data, size_t len)
 	return 0;
 }
 
-int vhci_serve(int fd, struct tiny_usb *usb)
+static int answer(int fd, struct vhci_transfer *transfer, int status)
 {
-	uint8_t buffer[USBIP_HEADER + USBIP_MAX_DATA];
-	uint8_t *data = buffer + USBIP_HEADER;
-	struct usbip_request request;
-	int err, moved = 0;
-	size_t len = USBIP_HEADER;
+	const struct usbip_request *request = &transfer->request;
 
-	err = get(fd, buffer, USBIP_HEADER);
+	usbip_answer(transfer->answer, request, status, transfer->moved);
+	return put(fd, transfer->answer, USBIP_HEADER + (request->in ? transfer->moved : 0));
+}
+
+/* Have the device do it: 1 it has been answered, 0 it waits, or negative errno of the socket. */
+static int ask(struct vhci *vhci, struct vhci_transfer *transfer)
+{
+	const struct usbip_request *request = &transfer->request;
+	int moved = vhci->transfer(vhci->ctx, request, transfer->answer + USBIP_HEADER,
+	                           transfer->moved);
+	int err;
+
+	if (moved == -EAGAIN)
+		return 0;
+	if (moved > 0)
+		transfer->moved += (uint32_t)moved;
+	if (moved > 0 && !request->in && transfer->moved < request->length)
+		return 0;
+	err = answer(vhci->fd, transfer, moved < 0 ? moved : 0);
+	return err ? err : 1;
+}
+
+static void forget(struct vhci *vhci, unsigned i)
+{
+	vhci->count--;
+	memmove(&vhci->waiting[i], &vhci->waiting[i + 1],
+	        (vhci->count - i) * sizeof(vhci->waiting[0]));
+}
+
+/* The kernel takes a request back; what has been answered is gone already. */
+static int unlink_request(struct vhci *vhci, struct vhci_transfer *transfer)
+{
+	int status = 0;
+
+	for (unsigned i = 0; i < vhci->count; i++) {
+		if (vhci->waiting[i].request.seq != transfer->request.unlinked)
+			continue;
+		forget(vhci, i);
+		status = -ECONNRESET;
+		break;
+	}
+	return answer(vhci->fd, transfer, status);
+}
+
+int vhci_serve(struct vhci *vhci)
+{
+	struct vhci_transfer *transfer = &vhci->waiting[vhci->count];
+	int err;
+
+	if (vhci->count == VHCI_WAITING)
+		return -ENOBUFS;
+	transfer->moved = 0;
+	err = get(vhci->fd, transfer->answer, USBIP_HEADER);
 	if (!err)
-		err = usbip_decode(buffer, &request);
-	if (!err && request.command == USBIP_CMD_SUBMIT && !request.in)
-		err = get(fd, data, request.length);
+		err = usbip_decode(transfer->answer, &transfer->request);
 	if (err)
 		return err;
-	if (request.command == USBIP_CMD_SUBMIT)
-		moved = request.endpoint
-		                ? -EPIPE
-		                : tiny_usb_control(usb, request.setup, data, request.length);
-	usbip_answer(buffer, &request, moved < 0 ? moved : 0, moved < 0 ? 0 : (uint32_t)moved);
-	if (request.in && moved > 0)
-		len += (size_t)moved;
-	return put(fd, buffer, len);
+	if (transfer->request.command == USBIP_CMD_UNLINK)
+		return unlink_request(vhci, transfer);
+	if (!transfer->request.in)
+		err = get(vhci->fd, transfer->answer + USBIP_HEADER, transfer->request.length);
+	if (!err)
+		err = ask(vhci, transfer);
+	vhci->count += err == 0;
+	return err < 0 ? err : 0;
+}
+
+int vhci_again(struct vhci *vhci)
+{
+	for (unsigned i = 0; i < vhci->count;) {
+		int err = ask(vhci, &vhci->waiting[i]);
+
+		if (err < 0)
+			return err;
+		if (err)
+			forget(vhci, i);
+		else
+			i++;
+	}
+	return 0;
+}
+
+bool vhci_waits(const struct vhci *vhci, unsigned endpoint)
+{
+	for (unsigned i = 0; i < vhci->count; i++) {
+		if (vhci->waiting[i].request.endpoint == endpoint)
+			return true;
+	}
+	return false;
 }

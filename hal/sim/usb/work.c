@@ -367,7 +367,8 @@ static void end_work(struct sim_ds2490 *chip)
 	chip->work = (struct sim_ds2490_work){0};
 	if (!(work.bits & DS2490_ICP) && (work.result || work.bits & DS2490_NTF))
 		sim_ds2490_result(chip, work.result);
-	if (work.result && work.bits & DS2490_F)
+	/* that a search has found all is no error: the kernel searches with F, and loses no id */
+	if (work.result & ~DS2490_EOS && work.bits & DS2490_F)
 		chip->command.count = chip->out.count = chip->in.count = 0;
 }
 

@@ -58,7 +58,7 @@ static void test_a_stall_is_a_negative_status(void)
 	TEST_ASSERT_EQUAL_HEX8_ARRAY(minus_32, answer + 20, 4);
 }
 
-static void test_an_unlink_comes_too_late(void)
+static void test_an_unlink_that_comes_too_late(void)
 {
 	uint8_t unlink[USBIP_HEADER] = {[3] = 2, [7] = 9, [23] = 8};
 	uint8_t expected[USBIP_HEADER] = {[3] = 4, [7] = 9};
@@ -67,6 +67,7 @@ static void test_an_unlink_comes_too_late(void)
 
 	TEST_ASSERT_EQUAL_INT(0, usbip_decode(unlink, &request));
 	TEST_ASSERT_FALSE(request.in);
+	TEST_ASSERT_EQUAL_UINT32(8, request.unlinked);
 	usbip_answer(answer, &request, 0, 5);
 	TEST_ASSERT_EQUAL_HEX8_ARRAY(expected, answer, USBIP_HEADER);
 }
@@ -111,7 +112,7 @@ int main(void)
 	RUN_TEST(test_a_submitted_request_is_read_field_by_field);
 	RUN_TEST(test_the_answer_echoes_the_sequence_number_and_tells_the_bytes_moved);
 	RUN_TEST(test_a_stall_is_a_negative_status);
-	RUN_TEST(test_an_unlink_comes_too_late);
+	RUN_TEST(test_an_unlink_that_comes_too_late);
 	RUN_TEST(test_what_no_kernel_sends_is_refused);
 	RUN_TEST(test_no_random_header_passes_a_bound);
 	return UNITY_END();

@@ -175,6 +175,11 @@ static void test_a_search_of_a_short_wire_or_for_alarms_that_are_not_there(void)
 	usb_out(zero, 8);
 	TEST_ASSERT_EQUAL_HEX8(DS2490_EOS,
 	                       usb_result_of(DS2490_SEARCH | DS2490_RST | DS2490_SM, 0xEC));
+	usb_out(zero, 8);
+	TEST_ASSERT_EQUAL_HEX8(
+		DS2490_EOS,
+		usb_result_of(DS2490_SEARCH | DS2490_RST | DS2490_SM | DS2490_F, 0x40F0));
+	TEST_ASSERT_EQUAL_INT(32, usb_in(64)); /* F: not of that */
 	usb_event("short 0x18");
 	usb_out(zero, 8);
 	TEST_ASSERT_EQUAL_HEX8(
