@@ -360,6 +360,19 @@ def values():
         put("values", f"{i:02}", bytes([i % 11]) + text.encode())
 
 
+def modbus():
+    def asks(*pdus, options=b"\0"):
+        return options + b"".join(struct.pack(">HHHB", i, 0, 1 + len(p), 9) + p for i, p in enumerate(pdus))
+    read = [struct.pack(">BHH", *row) for row in ((3, 0, 125), (4, 46002, 60), (1, 1, 2), (2, 10001, 30))]
+    put("modbus", "read", asks(*read))
+    put("modbus", "little", asks(*read, options=b"\3"))
+    put("modbus", "unit", asks(*read, options=b"\x24"))
+    put("modbus", "write", asks(struct.pack(">BHH", 6, 24, 7), struct.pack(">BHH", 5, 2, 0xFF00), struct.pack(">BHH", 6, 12, 1),
+                                struct.pack(">BHHBff", 16, 46002, 4, 8, 21.5, -3), struct.pack(">BHHBB", 15, 1, 3, 1, 5)))
+    put("modbus", "half", asks(read[0])[:-2])
+    put("modbus", "other", asks(b"\x2b\x0e\1\0", b"\x10\0\x10\0\4\x08" + b"\x7f" * 8) + b"GET / HTTP/1.0")
+
+
 def writer():
     head, tag = b"owsd-writer 1\n", b"base: 9f3a00c417d2e5b1\n"
     put("writer", "replace", head + b"do: replace\n" + tag + b"for: anna\nlength: 11\n\nOwsDrv {\n}\n")
@@ -419,5 +432,5 @@ def sparkplug():
 
 if __name__ == "__main__":
     for target in (rio, owserver, serve, controller, control, image, w1, netlink, scenario, owsctl,
-                   values, web, writer, sparkplug):
+                   values, web, writer, sparkplug, modbus):
         target()

@@ -108,6 +108,13 @@ class Client:
         words = self.registers(address, struct.calcsize(form) // 2, function)
         return struct.unpack(form, struct.pack(f">{len(words)}H", *words))[0]
 
+    def write(self, address, form, *numbers):
+        data = struct.pack(form, *numbers)
+        return self.ask(struct.pack(">BHHB", 16, address, len(data) // 2, len(data)) + data)
+
+    def write_one(self, address, number, function=6):
+        return self.ask(struct.pack(">BHH", function, address, number))
+
     def bits(self, address, count, function=1):
         answer = self.ask(struct.pack(">BHH", function, address, count))
         return [answer[1 + i // 8] >> i % 8 & 1 for i in range(count)]
@@ -302,6 +309,105 @@ def test_pymodbus_reads_what_is_served(scene):
     assert struct.unpack(">dd", struct.pack(">8H", *values)) == (21.5, -3.25)
     assert magic == [0x4F57, 0x5344] and nothing == ADDRESS and len(both) == 32
     assert face.stop() == 0
+
+
+SAFE = {**RELAYS, "SafeValue": 9, "SafeDelay": 0}
+
+
+def commanded(scene, daemon, value):
+    until(lambda: scene.get(daemon, "relays") == value, 20,
+          lambda: f"relays is {value}, not {scene.get(daemon, 'relays')}")
+
+
+def test_a_client_writes_what_it_may_and_the_journal_has_its_address(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, RELAYS))
+    face = serve(scene, daemon)
+
+    def reload(**keys):
+        daemon.config.write_text(text(scene, port, ROOM, RELAYS, **keys))
+        assert scene.owsctl(daemon, "reload").returncode == 0
+
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        assert refused(plc.write_one, 32 + SHORT, 1) == FUNCTION
+        reload(Write="on", Allow="relays 10.0.0.5")
+        until(lambda: refused(plc.write_one, 32 + SHORT, 1) == ADDRESS, 20, "writing is on, for another")
+        reload(Write="on", Allow="r* 127.0.0.1", Beat=0)
+        until(lambda: refused(plc.write_one, 32 + SHORT, 1) is None, 20, "writing is on")
+        commanded(scene, daemon, "1")
+        for form, at, number in ((">d", DOUBLE, 2), (">f", FLOAT, 3), (">i", LONG, 4), (">h", SHORT, 5)):
+            plc.write(32 + at, form, number)
+            commanded(scene, daemon, str(number))
+        plc.write(46004, ">f", 6)
+        commanded(scene, daemon, "6")
+        plc.write_one(2, 0xFF00, 5)
+        commanded(scene, daemon, "1")
+        plc.ask(struct.pack(">BHHBB", 15, 2, 1, 1, 0))
+        commanded(scene, daemon, "0")
+        for number in (2.5, 256, -1, math.nan, math.inf):
+            assert refused(plc.write, 32 + DOUBLE, ">d", number) == VALUE, number
+        assert refused(plc.write, 16 + DOUBLE, ">d", 20) == ADDRESS  # an input
+        assert refused(plc.write, 32 + DOUBLE, ">f", 20) == VALUE and refused(plc.write_one, 32 + QUALITY, 1) == ADDRESS
+        journal = scene.owsctl(daemon, "--json", "journal").stdout
+        assert '"modbus:127.0.0.1"' in journal and '"owsd-modbus"' in journal, journal
+        logged(face, "command to relays of modbus:127.0.0.1 refused: ")
+        # what waited while the program was stopped moves nothing
+        face.freeze()
+        plc.socket.sendall(plc.frame(struct.pack(">BHH", 6, 32 + SHORT, 77)))
+        time.sleep(2.2)  # longer than a command may wait
+        face.thaw()
+        assert plc.answer() == bytes([0x86, BUSY])
+        assert scene.get(daemon, "relays") == "0"
+        plc.write_one(32 + SHORT, 7)
+        commanded(scene, daemon, "7")
+    time.sleep(0.5)  # Beat 0: its connection is gone, and nothing happens
+    assert scene.get(daemon, "relays") == "7"
+    assert face.stop() == 0
+
+
+def test_outputs_of_a_client_that_falls_silent_go_to_their_safe_value(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, SAFE, Write="on", Allow="relays 127.0.0.1", Beat=3))
+    face = serve(scene, daemon)
+
+    def asks_for(plc, seconds):
+        begun = time.monotonic()
+        while time.monotonic() - begun < seconds:
+            plc.registers(0, 5)
+            assert scene.get(daemon, "relays") == "5"
+
+    with Client(port) as plc:
+        plc.becomes(1, GOOD)
+        plc.write_one(32 + SHORT, 5)
+        commanded(scene, daemon, "5")
+        asks_for(plc, 5)  # it only reads
+    commanded(scene, daemon, "9")  # it has left
+    with Client(port) as plc:
+        plc.write_one(32 + SHORT, 5)
+        commanded(scene, daemon, "5")
+        # a restart of owsd on the way
+        daemon.stop()
+        daemon = scene.owsd(daemon.config, name=daemon.name)
+        until(lambda: refused(plc.write_one, 32 + SHORT, 5) is None, 20, "owsd is back")
+        commanded(scene, daemon, "5")
+        asks_for(plc, 5)
+        plc.write_one(12, 1)  # its program beats from now on
+
+        def stopped():
+            plc.registers(0, 5)  # and something else goes on to ask
+            return scene.get(daemon, "relays") == "9"
+        until(stopped, 20, "the program has stopped")
+        plc.write_one(32 + SHORT, 6)
+        commanded(scene, daemon, "6")
+        face.kill()
+        commanded(scene, daemon, "9")
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        until(lambda: refused(plc.write_one, 32 + SHORT, 5) is None, 20, "it is taken")
+        commanded(scene, daemon, "5")
+        assert face.stop() == 0
+    commanded(scene, daemon, "9")
 
 
 def test_each_option_changes_what_is_served_from_a_reload_on(scene):

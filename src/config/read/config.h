@@ -216,8 +216,10 @@ struct config_modbus {
 	unsigned address_count;
 	const char *listen; /* as written; NULL only without the block, or with an error in it */
 	const char *word_order, *bad_value;
-	const char *map; /* NULL: none */
+	const char *map, *allow; /* NULL: none */
 	unsigned unit, decimals, clients;
+	int64_t beat_ns;
+	bool write;
 };
 
 /* The Notify block, for owsd-notify; the texts are NULL where the file has none. */

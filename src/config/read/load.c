@@ -14,6 +14,7 @@
 #include "src/config/read/identity.h"
 #include "src/config/read/item.h"
 #include "src/config/read/load.h"
+#include "src/config/read/modbus.h"
 #include "src/config/read/mqtt.h"
 #include "src/config/read/options.h"
 #include "src/config/read/recorder.h"
@@ -88,15 +89,6 @@ static void build_driver(struct build *build, const struct option_value *values)
 		targets_add(build, target->text, target->node->value_at);
 	else if (!target->node)
 		targets_add(build, option_table[OPT_TARGET_NAME].preset, (struct rio_position){0});
-}
-
-static void modbus_derive(struct build *build, const struct option_value *values)
-{
-	struct config_modbus *modbus = &build->box->config.modbus;
-
-	if (modbus->listen)
-		serve_addresses(build, modbus->listen, values[OPT_MODBUS_LISTEN].node->value_at,
-		                modbus->addresses, &modbus->address_count);
 }
 
 static void notify_derive(struct build *build, const struct option_value *values)

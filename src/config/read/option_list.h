@@ -305,6 +305,12 @@ OPTION(MODBUS_CLIENTS, "Clients", MODBUS, COUNT, clients, RANGE(1, 256), .preset
        .help = "most connections at a time")
 OPTION(MODBUS_MAP, "Map", MODBUS, TEXT, map, .check = text_is_path,
        .help = "file with places of signals that are fixed")
+OPTION(MODBUS_WRITE, "Write", MODBUS, FLAG, write, .preset = "off",
+       .help = "take commands from the clients of Allow")
+OPTION(MODBUS_ALLOW, "Allow", MODBUS, TEXT, allow,
+       .help = "which signals from where: PATTERN ADDRESS..., with commas between them")
+OPTION(MODBUS_BEAT, "Beat", MODBUS, SECONDS, beat_ns, RANGE(0, 3600), .preset = "10",
+       .help = "silence of a client after which its outputs go to SafeValue, seconds; 0: never")
 /* clang-format on */
 #undef BLOCK
 #undef OPTION

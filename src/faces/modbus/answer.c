@@ -7,6 +7,8 @@
 
 #define REGISTERS_MOST 125
 #define BITS_MOST 2000
+#define WRITTEN_MOST 123
+#define BITS_WRITTEN_MOST 1968
 /* Inputs of one bit: the value is not 0; from these on, it is good, it has an alarm */
 #define BITS_GOOD 10000
 #define BITS_ALARM 20000
@@ -16,6 +18,10 @@ enum function {
 	READ_INPUTS = 2,
 	READ_HOLDING = 3,
 	READ_REGISTERS = 4,
+	WRITE_COIL = 5,
+	WRITE_REGISTER = 6,
+	WRITE_COILS = 15,
+	WRITE_REGISTERS = 16,
 };
 
 /* A request without its head, and its answer. */
@@ -151,24 +157,128 @@ static enum exception read_bits(struct exchange *x)
 	return wrong;
 }
 
-/* Which functions there are, and how long their requests are. */
+/* Write registers of which the first stands at data: the values that they are, all or none. */
+static enum exception write_values(struct exchange *x, const uint8_t *data, unsigned count,
+                                   bool really)
+{
+	const struct answer_source *source = x->source;
+	unsigned first = word_at(x->request + 1), width;
+	enum exception wrong = EXCEPTION_NONE;
+	uint16_t words[LAYOUT_FIELD_MOST];
+	struct layout_place at;
+	double number;
+
+	for (unsigned i = 0; i < count && !wrong; i += width) {
+		if (!layout_find(first + i, &at))
+			return EXCEPTION_ADDRESS;
+		width = layout_width(at.field);
+		if (at.field == LAYOUT_HEADER && at.part == LAYOUT_BEAT) {
+			wrong = source->beat(source->ctx, really);
+			continue;
+		}
+		if (!layout_is_value(at.field) || at.part)
+			return EXCEPTION_ADDRESS;
+		wrong = look_at(x, at.place);
+		if (wrong)
+			return wrong;
+		/* the rest of the number may be in a request that never comes */
+		if (i + width > count)
+			return EXCEPTION_VALUE;
+		for (unsigned k = 0; k < width; k++)
+			words[k] = (uint16_t)word_at(data + 2 * (i + k));
+		if (!layout_number(words, at.field, x->row.decimals, source->little, &number))
+			return EXCEPTION_VALUE;
+		wrong = source->write(source->ctx, at.place, number, really);
+	}
+	return wrong;
+}
+
+static enum exception write_bits(struct exchange *x, const uint8_t *bits, unsigned count,
+                                 bool really)
+{
+	enum exception wrong = EXCEPTION_NONE;
+
+	for (unsigned i = 0; i < count && !wrong; i++) {
+		unsigned place = word_at(x->request + 1) + i;
+
+		wrong = look_at(x, place);
+		if (!wrong)
+			wrong = x->source->write(x->source->ctx, place, bits[i / 8] >> i % 8 & 1,
+			                         really);
+	}
+	return wrong;
+}
+
+/* What is written is asked for as a whole before any of it is done. */
+static enum exception write_all(struct exchange *x, const uint8_t *data, unsigned count,
+                                enum exception (*write)(struct exchange *x, const uint8_t *data,
+                                                        unsigned count, bool really))
+{
+	enum exception wrong = write(x, data, count, false);
+
+	memcpy(x->answer + 1, x->request + 1, 4);
+	x->len = 5;
+	return wrong ? wrong : write(x, data, count, true);
+}
+
+static enum exception write_coil(struct exchange *x)
+{
+	unsigned value = word_at(x->request + 3);
+	uint8_t bit = value != 0;
+
+	if (value != 0 && value != 0xff00)
+		return EXCEPTION_VALUE;
+	return write_all(x, &bit, 1, write_bits);
+}
+
+static enum exception write_register(struct exchange *x)
+{
+	return write_all(x, x->request + 3, 1, write_values);
+}
+
+static enum exception write_coils(struct exchange *x)
+{
+	unsigned count = word_at(x->request + 3);
+
+	if (count < 1 || count > BITS_WRITTEN_MOST || x->request[5] != (count + 7) / 8 ||
+	    x->n != 6u + x->request[5])
+		return EXCEPTION_VALUE;
+	return write_all(x, x->request + 6, count, write_bits);
+}
+
+static enum exception write_registers(struct exchange *x)
+{
+	unsigned count = word_at(x->request + 3);
+
+	if (count < 1 || count > WRITTEN_MOST || x->request[5] != 2 * count ||
+	    x->n != 6 + 2 * count)
+		return EXCEPTION_VALUE;
+	return write_all(x, x->request + 6, count, write_values);
+}
+
+/* Which functions there are, and how long their requests are: so long, or at least so long. */
 static const struct {
 	enum function function;
 	size_t length;
+	bool more;
 	enum exception (*answer)(struct exchange *x);
 } functions[] = {
-	{READ_COILS, 5, read_bits},
-	{READ_INPUTS, 5, read_bits},
-	{READ_HOLDING, 5, read_registers},
-	{READ_REGISTERS, 5, read_registers},
+	{READ_COILS, 5, false, read_bits},        {READ_INPUTS, 5, false, read_bits},
+	{READ_HOLDING, 5, false, read_registers}, {READ_REGISTERS, 5, false, read_registers},
+	{WRITE_COIL, 5, false, write_coil},       {WRITE_REGISTER, 5, false, write_register},
+	{WRITE_COILS, 6, true, write_coils},      {WRITE_REGISTERS, 6, true, write_registers},
 };
 
 static enum exception answer_pdu(struct exchange *x)
 {
-	for (size_t i = 0; i < sizeof(functions) / sizeof(functions[0]); i++)
-		if (functions[i].function == x->request[0])
-			return x->n == functions[i].length ? functions[i].answer(x)
-			                                   : EXCEPTION_VALUE;
+	for (size_t i = 0; i < sizeof(functions) / sizeof(functions[0]); i++) {
+		if (functions[i].function != x->request[0])
+			continue;
+		if (x->n < functions[i].length ||
+		    (!functions[i].more && x->n != functions[i].length))
+			return EXCEPTION_VALUE;
+		return functions[i].answer(x);
+	}
 	return EXCEPTION_FUNCTION;
 }
 

@@ -27,6 +27,10 @@ struct answer_source {
 	/* What a place has. Of one that a signal had that is gone: not good, and had alone. */
 	enum exception (*row)(void *ctx, unsigned place, struct layout_row *row, bool *has);
 	void (*header)(void *ctx, uint16_t registers[LAYOUT_RECORD]);
+	/* May this client command that place? really: and do so. */
+	enum exception (*write)(void *ctx, unsigned place, double number, bool really);
+	/* It has written its beat. */
+	enum exception (*beat)(void *ctx, bool really);
 	void *ctx;
 };
 

@@ -166,3 +166,29 @@ uint16_t layout_register(const struct layout_row *row, const struct layout_place
 
 	return (uint16_t)(bits_of(row, at->field) >> (16 * above));
 }
+
+bool layout_number(const uint16_t *registers, enum layout_field field, unsigned decimals,
+                   bool little, double *number)
+{
+	unsigned width = layout_width(field);
+	uint64_t bits = 0;
+	uint32_t half;
+	float single;
+
+	for (unsigned i = 0; i < width; i++)
+		bits = bits << 16 | registers[little ? width - 1 - i : i];
+	half = (uint32_t)bits;
+	if (field == LAYOUT_DOUBLE) {
+		memcpy(number, &bits, sizeof(*number));
+		return isfinite(*number);
+	}
+	if (field == LAYOUT_FLOAT) {
+		memcpy(&single, &half, sizeof(single));
+		*number = single;
+		return isfinite(single);
+	}
+	*number = field == LAYOUT_SHORT ? (int16_t)half : (int32_t)half;
+	for (unsigned i = 0; i < decimals; i++)
+		*number /= 10;
+	return half != (field == LAYOUT_SHORT ? BAD_SHORT : BAD_LONG);
+}

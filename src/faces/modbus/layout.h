@@ -56,6 +56,7 @@ enum layout_head {
 	LAYOUT_SIGNALS,     /* how many places have a signal */
 	LAYOUT_CHANGED,     /* uint32, UTC of the last change of a value or quality; 0: none */
 	LAYOUT_TIME = 10,   /* uint32, UTC now */
+	LAYOUT_BEAT = 12,   /* what a client writes here is its beat; reads as 0 */
 };
 #define LAYOUT_MAGIC_NUMBER 0x4f575344u
 
@@ -75,5 +76,11 @@ unsigned layout_in_row(enum layout_field field, unsigned place);
 
 /* A register of a row. little: the low word of a number comes first. */
 uint16_t layout_register(const struct layout_row *row, const struct layout_place *at, bool little);
+/*
+ * The number that registers of a field of a value mean, the way back. False: none, as those of a
+ * value that is not good.
+ */
+bool layout_number(const uint16_t *registers, enum layout_field field, unsigned decimals,
+                   bool little, double *number);
 /* Put a number of 32 bits where two registers stand. */
 void layout_put_32(uint16_t *registers, uint32_t number, bool little);

@@ -92,13 +92,43 @@ static void header_of(void *ctx, uint16_t registers[LAYOUT_RECORD])
 	layout_put_32(registers + LAYOUT_TIME, (uint32_t)utc_s(), little);
 }
 
+static enum exception write_to(void *ctx, unsigned place, double number, bool really)
+{
+	struct modbus *m = ctx;
+	int signal = m->map.places[place].signal;
+	enum exception wrong = writing_may(&m->writing, NULL, &m->client->from);
+	struct ows_info info;
+
+	if (wrong)
+		return wrong;
+	if (signal == MAP_NO_SIGNAL)
+		return EXCEPTION_ADDRESS;
+	if (!look_is_current(m->face) || ows_info(m->face->ows, signal, &info))
+		return EXCEPTION_BUSY;
+	wrong = writing_may(&m->writing, info.name, &m->client->from);
+	return wrong || !really ? wrong
+	                        : writing_set(&m->writing, info.name, number, &m->client->from,
+	                                      m->client->came_ns);
+}
+
+static enum exception beat_of(void *ctx, bool really)
+{
+	struct modbus *m = ctx;
+	enum exception wrong = writing_may(&m->writing, NULL, &m->client->from);
+
+	if (!wrong && really)
+		writing_heard(&m->writing, &m->client->from, true);
+	return wrong;
+}
+
 static size_t answer(void *ctx, const struct client *client, const uint8_t *request,
                      uint8_t answer[FRAME_MOST])
 {
 	struct modbus *m = ctx;
 
-	(void)client;
 	m->now_ns = ows_now();
+	m->client = client;
+	writing_heard(&m->writing, &client->from, false);
 	return frame_answer(&m->source, request, answer);
 }
 
@@ -251,8 +281,10 @@ int modbus_open(struct face *face)
 	m->face = face;
 	m->source.row = row_of;
 	m->source.header = header_of;
+	m->source.write = write_to;
+	m->source.beat = beat_of;
 	m->source.ctx = m->clients.ctx = m;
-	m->clients.face = face;
+	m->clients.face = m->writing.face = face;
 	m->clients.answer = answer;
 	if (lock_map(m)) {
 		face_complain(face->ops->program, "another owsd-modbus serves %s: end it first",
@@ -328,8 +360,18 @@ void modbus_report(struct face *face, FILE *out)
 {
 	const struct modbus *m = face->own;
 
-	fprintf(out, "count requests %llu\ncount refused %llu\n",
-	        (unsigned long long)m->clients.requests, (unsigned long long)m->clients.refused);
+	const struct {
+		const char *name;
+		uint64_t count;
+	} counts[] = {
+		{"requests", m->clients.requests},
+		{"commands", m->writing.taken},
+		{"refused", m->clients.refused + m->writing.refused},
+	};
+
+	for (size_t i = 0; i < sizeof(counts) / sizeof(counts[0]); i++)
+		fprintf(out, "count %s %llu\n", counts[i].name,
+		        (unsigned long long)counts[i].count);
 	if (!m->known || !m->kept)
 		fprintf(out, "trouble the map of addresses cannot be %s\n",
 		        m->known ? "written" : "read");
@@ -340,6 +382,7 @@ void modbus_close(struct face *face)
 	struct modbus *m = face->own;
 
 	clients_close(&m->clients);
+	writing_close(&m->writing);
 	map_free(&m->map);
 	if (m->lock >= 0)
 		close(m->lock);

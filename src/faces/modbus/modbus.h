@@ -9,6 +9,7 @@
 #include "src/faces/kit/face.h"
 #include "src/faces/modbus/clients.h"
 #include "src/faces/modbus/map.h"
+#include "src/faces/modbus/writing.h"
 #include "src/history/file/place.h"
 
 /* What is known of the signal of a place as long as the image is the same. */
@@ -21,16 +22,19 @@ struct modbus {
 	struct face *face;
 	struct answer_source source;
 	struct clients clients;
+	struct writing writing;
 	struct map map;
 	struct served served[LAYOUT_PLACES];
 	char path[HISTORY_PATH + 8]; /* of the map; "": none */
-	int lock;                    /* of its directory; below 0: none */
+	int lock;            /* of its directory; below 0: none */
 	unsigned signals, decimals;
 	bool known, kept; /* the map was read; it is in its file */
 	uint32_t generation;
 	uint16_t heart;
 	int64_t changed_s; /* UTC; 0: nothing has changed yet */
-	int64_t now_ns;    /* of the request that is answered */
+	/* the request that is answered */
+	int64_t now_ns;
+	const struct client *client;
 };
 
 int modbus_open(struct face *face);

@@ -271,9 +271,10 @@ static bool goes_through(const struct option_def *def, const char *value)
 static bool some_goes_through(const struct option_def *def)
 {
 	static const char *const texts[] = {
-		"/x/y",     "ab",          "http://h/w",         "mqtt://h", "2026-11-22", "3.1.1",
-		"plain",    "interval 5",  "4:0 20:100",         "root",     "8080",       "a=b",
-		"critical", "22:00-06:30", "boiler http://pi2/", "little",   "exception"};
+		"/x/y",          "ab",     "http://h/w", "mqtt://h",    "2026-11-22",
+		"3.1.1",         "plain",  "interval 5", "4:0 20:100",  "root",
+		"8080",          "a=b",    "critical",   "22:00-06:30", "boiler http://pi2/",
+		"pump 10.0.0.1", "little", "exception"};
 	char number[40];
 
 	switch (def->kind) {

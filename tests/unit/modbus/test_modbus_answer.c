@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of requests and answers, byte by byte. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "unity.h"
@@ -33,6 +34,32 @@ static void header_of(void *ctx, uint16_t registers[LAYOUT_RECORD])
 		registers[i] = (uint16_t)(0x100 + i);
 }
 
+/* What was written: "1=21.5 " for each; and asked for, "1? ". Place 2 is not to be written. */
+static char written[200];
+
+static enum exception write_to(void *ctx, unsigned place, double number, bool really)
+{
+	char one[40];
+
+	(void)ctx;
+	if (place != 1 && place != 3)
+		return EXCEPTION_ADDRESS;
+	if (really && number == 99)
+		return EXCEPTION_BUSY;
+	snprintf(one, sizeof(one), really ? "%u=%g " : "%u? ", place, number);
+	if (strlen(written) + strlen(one) < sizeof(written))
+		strcat(written, one);
+	return EXCEPTION_NONE;
+}
+
+static enum exception beat_of(void *ctx, bool really)
+{
+	(void)ctx;
+	if (really && strlen(written) + 5 < sizeof(written))
+		strcat(written, "beat ");
+	return EXCEPTION_NONE;
+}
+
 static int looks;
 static struct answer_source source;
 static uint8_t answer[FRAME_MOST];
@@ -40,7 +67,12 @@ static uint8_t answer[FRAME_MOST];
 void setUp(void)
 {
 	looks = 0;
-	source = (struct answer_source){.row = row_of, .header = header_of, .ctx = &looks};
+	written[0] = '\0';
+	source = (struct answer_source){.row = row_of,
+	                                .header = header_of,
+	                                .write = write_to,
+	                                .beat = beat_of,
+	                                .ctx = &looks};
 }
 
 void tearDown(void)
@@ -139,9 +171,86 @@ static void test_what_is_no_request_is_refused(void)
 	uint8_t longer[] = {0, 1, 0, 0, 0, 7, 1, 3, 0, 0, 0, 1, 0};
 
 	refuses(7, 0, 0, EXCEPTION_FUNCTION);
-	refuses(6, 16, 0, EXCEPTION_FUNCTION);
 	refuses(0x83, 0, 1, EXCEPTION_FUNCTION);
 	TEST_ASSERT_EQUAL_size_t(9, frame_answer(&source, longer, answer));
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_VALUE, answer[8]);
+}
+
+/* A write of several: its answer, or exception, is in answer. */
+static void write_some(uint8_t function, unsigned address, unsigned count, const char *data,
+                       size_t len)
+{
+	uint8_t request[FRAME_MOST] = {0x12,
+	                               0x34,
+	                               0,
+	                               0,
+	                               0,
+	                               (uint8_t)(7 + len),
+	                               9,
+	                               function,
+	                               (uint8_t)(address >> 8),
+	                               (uint8_t)address,
+	                               (uint8_t)(count >> 8),
+	                               (uint8_t)count,
+	                               (uint8_t)len};
+
+	memcpy(request + 13, data, len);
+	written[0] = '\0';
+	frame_answer(&source, request, answer);
+	if (answer[7] == function)
+		TEST_ASSERT_EQUAL_MEMORY(request + 8, answer + 8, 4);
+	else
+		TEST_ASSERT_EQUAL_HEX8(function | 0x80, answer[7]);
+}
+
+static void test_a_number_is_written_in_each_form_and_as_a_whole(void)
+{
+	write_some(16, 16, 4, "\x40\x35\x80\0\0\0\0\0", 8);
+	TEST_ASSERT_EQUAL_STRING("1? 1=21.5 ", written);
+	write_some(16, 46002, 2, "\x41\xac\0\0", 4);
+	TEST_ASSERT_EQUAL_STRING("1? 1=21.5 ", written);
+	answers(6, 16 + 8, 0xfffe, "\0\x18\xff\xfe", 4);
+	TEST_ASSERT_EQUAL_STRING("1? 1=21.5 1? 1=-2 ", written);
+	answers(6, 12, 7, "\0\x0c\0\x07", 4);
+	TEST_ASSERT_EQUAL_STRING("1? 1=21.5 1? 1=-2 beat ", written);
+	source.little = true;
+	write_some(16, 46002, 2, "\0\0\x41\xac", 4);
+	TEST_ASSERT_EQUAL_STRING("1? 1=21.5 ", written);
+}
+
+static void test_half_a_number_none_and_what_is_beside_it_are_not_written(void)
+{
+	refuses(6, 16, 1, EXCEPTION_VALUE);
+	refuses(6, 17, 1, EXCEPTION_ADDRESS);
+	refuses(6, 16 + 9, 1, EXCEPTION_ADDRESS);
+	refuses(6, 0, 1, EXCEPTION_ADDRESS);
+	refuses(6, 16 + 8, 0x8000, EXCEPTION_VALUE);
+	refuses(6, 32 + 8, 1, EXCEPTION_ADDRESS);
+	refuses(5, 1, 1, EXCEPTION_VALUE);
+	write_some(16, 46002, 2, "\x7f\xc0\0\0", 4);
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_VALUE, answer[8]);
+	write_some(16, 46002, 4, "\x41\xac\0\0\x41\xac\0\0", 8);
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_ADDRESS,
+	                       answer[8]); /* place 2 takes nothing, so 1 neither */
+	TEST_ASSERT_EQUAL_STRING("1? ", written);
+	write_some(16, 46002, 2, "\x41\xac\0", 3);
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_VALUE, answer[8]);
+	write_some(16, 46002, 0, "", 0);
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_VALUE, answer[8]);
+	write_some(16, 46002, 2, "\x42\xc6\0\0", 4);
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_BUSY, answer[8]);
+}
+
+static void test_bits_are_written_as_1_and_0(void)
+{
+	answers(5, 1, 0xff00, "\0\x01\xff\0", 4);
+	answers(5, 1, 0, "\0\x01\0\0", 4);
+	TEST_ASSERT_EQUAL_STRING("1? 1=1 1? 1=0 ", written);
+	write_some(15, 1, 1, "\xff", 1);
+	TEST_ASSERT_EQUAL_STRING("1? 1=1 ", written);
+	write_some(15, 1, 3, "\x05", 1);
+	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_ADDRESS, answer[8]);
+	write_some(15, 1, 9, "\x05", 1);
 	TEST_ASSERT_EQUAL_HEX8(EXCEPTION_VALUE, answer[8]);
 }
 
@@ -223,6 +332,9 @@ int main(void)
 	RUN_TEST(test_an_address_without_a_signal_is_refused);
 	RUN_TEST(test_a_bit_says_that_the_value_is_not_0_or_that_it_is_good_or_has_an_alarm);
 	RUN_TEST(test_what_is_no_request_is_refused);
+	RUN_TEST(test_a_number_is_written_in_each_form_and_as_a_whole);
+	RUN_TEST(test_half_a_number_none_and_what_is_beside_it_are_not_written);
+	RUN_TEST(test_bits_are_written_as_1_and_0);
 	RUN_TEST(test_a_unit_answers_alone_if_one_is_named);
 	RUN_TEST(test_a_stream_is_cut_into_requests);
 	RUN_TEST(test_whatever_is_asked_has_a_whole_answer);

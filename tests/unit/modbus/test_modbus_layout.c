@@ -158,6 +158,36 @@ static void test_what_stands_beside_a_value_is_as_it_is(void)
 	TEST_ASSERT_EQUAL_HEX16(0x5344, pair[0]);
 }
 
+static void test_a_number_comes_back_from_its_registers_and_none_from_what_is_bad(void)
+{
+	static const double numbers[] = {0, 21.5, -3.25, 300, -300};
+
+	for (int field = LAYOUT_DOUBLE; field <= LAYOUT_SHORT; field++)
+		for (size_t i = 0; i < 2 * sizeof(numbers) / sizeof(numbers[0]); i++) {
+			struct layout_row of = row(numbers[i / 2]);
+			uint16_t words[LAYOUT_FIELD_MOST];
+			bool little = i & 1;
+			double number = 99;
+
+			for (unsigned k = 0; k < 2; k++) {
+				for (unsigned part = 0;
+				     part < layout_width((enum layout_field)field); part++)
+					words[part] = layout_register(
+						&of,
+						&(struct layout_place){
+							.field = (enum layout_field)field,
+							.part = part},
+						little);
+				TEST_ASSERT_EQUAL(of.good,
+				                  layout_number(words, (enum layout_field)field, 2,
+				                                little, &number));
+				if (of.good)
+					TEST_ASSERT_EQUAL_DOUBLE(numbers[i / 2], number);
+				of.good = false;
+			}
+		}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -167,5 +197,6 @@ int main(void)
 	RUN_TEST(test_whole_numbers_are_rounded_and_what_does_not_fit_is_bad);
 	RUN_TEST(test_what_is_not_good_is_no_number_in_any_field);
 	RUN_TEST(test_what_stands_beside_a_value_is_as_it_is);
+	RUN_TEST(test_a_number_comes_back_from_its_registers_and_none_from_what_is_bad);
 	return UNITY_END();
 }

@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of connections, over loopback, on a clock of their own where time counts. */
+#include <arpa/inet.h>
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "unity.h"
+
+#include "src/faces/modbus/clients.h"
+
+static struct face face;
+static struct clients clients;
+static struct config_modbus options;
+static int64_t now_ns;
+
+/* Each request is answered by itself. */
+static size_t answer(void *ctx, const struct client *client, const uint8_t *request,
+                     uint8_t bytes[FRAME_MOST])
+{
+	size_t len = 6u + request[5];
+
+	(void)ctx;
+	TEST_ASSERT_TRUE(client->used && client->came_ns <= ows_now());
+	memcpy(bytes, request, len);
+	return len;
+}
+
+void setUp(void)
+{
+	const char *why;
+
+	face = (struct face){.log = log_create(LOG_LEVEL_ERR)};
+	clients = (struct clients){.face = &face, .answer = answer};
+	options = (struct config_modbus){.given = true, .clients = 4, .address_count = 1};
+	TEST_ASSERT_EQUAL_INT(1, listen_parse("127.0.0.1:0", 11, options.addresses, &why));
+	now_ns = ows_now();
+	TEST_ASSERT_EQUAL_INT(0, clients_open(&clients));
+	clients_follow(&clients, &options, now_ns);
+}
+
+void tearDown(void)
+{
+	clients_close(&clients);
+	log_destroy(face.log);
+}
+
+static void run_clients(void)
+{
+	struct pollfd ready = {.fd = clients.epoll, .events = POLLIN};
+
+	while (poll(&ready, 1, 20) > 0)
+		clients_take(&clients);
+}
+
+static int join(void)
+{
+	struct sockaddr_in at;
+	socklen_t len = sizeof(at);
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+
+	TEST_ASSERT_EQUAL_INT(0, getsockname(clients.listeners[0], (struct sockaddr *)&at, &len));
+	TEST_ASSERT_EQUAL_INT(0, connect(fd, (struct sockaddr *)&at, sizeof(at)));
+	run_clients();
+	return fd;
+}
+
+static const uint8_t request[] = {0, 1, 0, 0, 0, 6, 1, 3, 0, 0, 0, 1};
+
+static void sends(int fd, const void *bytes, size_t n)
+{
+	TEST_ASSERT_EQUAL_INT((int)n, (int)send(fd, bytes, n, MSG_NOSIGNAL));
+	run_clients();
+}
+
+/* How many bytes have come; -1: it was closed. */
+static int got(int fd)
+{
+	uint8_t bytes[1024];
+	ssize_t n = recv(fd, bytes, sizeof(bytes), MSG_DONTWAIT);
+
+	return n > 0 ? (int)n : n < 0 && errno == EAGAIN ? 0 : -1;
+}
+
+static void test_a_request_is_answered_when_it_is_whole(void)
+{
+	int fd = join();
+
+	TEST_ASSERT_EQUAL_UINT(1, clients.count);
+	sends(fd, request, 7);
+	TEST_ASSERT_EQUAL_INT(0, got(fd));
+	sends(fd, request + 7, 5);
+	TEST_ASSERT_EQUAL_INT(sizeof(request), got(fd));
+	for (unsigned i = 0; i < 3; i++)
+		TEST_ASSERT_EQUAL_INT(sizeof(request), (int)send(fd, request, sizeof(request), 0));
+	run_clients();
+	TEST_ASSERT_EQUAL_INT(3 * sizeof(request), got(fd));
+	TEST_ASSERT_EQUAL_UINT64(4, clients.requests);
+	close(fd);
+	run_clients();
+	TEST_ASSERT_EQUAL_UINT(0, clients.count);
+}
+
+static void test_one_that_owes_the_rest_of_a_request_is_closed_and_a_silent_one_is_not(void)
+{
+	int half = join(), silent = join();
+	int64_t due_ns;
+
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, clients_tick(&clients, now_ns));
+	sends(half, request, 7);
+	due_ns = clients_tick(&clients, now_ns);
+	TEST_ASSERT_INT64_WITHIN(NS_PER_S, now_ns + CLIENTS_LATE_NS, due_ns);
+	sends(half, request + 7, 2); /* a little more is no reason to wait longer */
+	TEST_ASSERT_EQUAL_INT64(due_ns, clients_tick(&clients, due_ns - 1));
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, clients_tick(&clients, due_ns));
+	TEST_ASSERT_EQUAL_INT(-1, got(half));
+	TEST_ASSERT_EQUAL_INT(0, got(silent));
+	clients_tick(&clients, due_ns + 1000 * NS_PER_S);
+	TEST_ASSERT_EQUAL_INT(0, got(silent));
+	close(half);
+	close(silent);
+}
+
+static void test_what_is_no_request_closes_the_connection(void)
+{
+	int fd = join();
+
+	sends(fd, "GET / HTTP/1.0\r\n", 16);
+	TEST_ASSERT_EQUAL_INT(-1, got(fd));
+	TEST_ASSERT_EQUAL_UINT64(1, clients.refused);
+	close(fd);
+}
+
+static void test_of_one_address_the_most_silent_gives_way(void)
+{
+	int first = join(), second = join(), third;
+
+	sends(first, request, sizeof(request));
+	TEST_ASSERT_EQUAL_INT(sizeof(request), got(first));
+	third = join();
+	TEST_ASSERT_EQUAL_INT(-1, got(second));
+	TEST_ASSERT_EQUAL_INT(0, got(first));
+	TEST_ASSERT_EQUAL_INT(0, got(third));
+	TEST_ASSERT_EQUAL_UINT(2, clients.count);
+	close(first);
+	close(second);
+	close(third);
+}
+
+static void test_without_the_block_all_are_closed(void)
+{
+	int fd = join();
+
+	options = (struct config_modbus){.clients = 4};
+	clients_follow(&clients, &options, now_ns);
+	TEST_ASSERT_EQUAL_UINT(0, clients.listener_count);
+	TEST_ASSERT_EQUAL_INT(-1, got(fd));
+	close(fd);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_request_is_answered_when_it_is_whole);
+	RUN_TEST(test_one_that_owes_the_rest_of_a_request_is_closed_and_a_silent_one_is_not);
+	RUN_TEST(test_what_is_no_request_closes_the_connection);
+	RUN_TEST(test_of_one_address_the_most_silent_gives_way);
+	RUN_TEST(test_without_the_block_all_are_closed);
+	return UNITY_END();
+}

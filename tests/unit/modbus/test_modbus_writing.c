@@ -1,0 +1,144 @@
+/* SPDX-License-Identifier: MIT */
+/* Tests of what clients may command, and of how they are called. */
+#include <errno.h>
+#include <string.h>
+
+#include "unity.h"
+
+#include "src/faces/modbus/writing.h"
+#include "tests/unit/aid/instance.h"
+
+#define S INSTANCE_S
+
+static const struct instance_signal signals[] = {
+	{"pump", "/29.1/PIO.0", OWS_BOOL, true, 0},
+	{"room", "/28.1/temperature", OWS_DOUBLE, false, 0},
+};
+enum { PUMP = 1, ROOM, COUNT };
+
+static struct instance in;
+static struct config config;
+static struct face_arguments arguments;
+static const struct face_ops ops = {.program = "owsd-modbus"};
+static struct face face;
+static struct writing w;
+static struct listen_address plc, other;
+
+void setUp(void)
+{
+	const char *why;
+	struct listen_address both[2];
+
+	instance_start(&in, "modbus", signals, COUNT - 1);
+	config = (struct config){.modbus = {.write = true,
+	                                    .allow = "pump 10.0.0.5, room 10.0.0.5",
+	                                    .beat_ns = 3 * S}};
+	arguments.instance = in.name;
+	face = (struct face){.ops = &ops, .arguments = &arguments, .config = &config};
+	face.log = log_create(LOG_LEVEL_ERR);
+	w = (struct writing){.face = &face};
+	TEST_ASSERT_EQUAL_INT(1, listen_parse("10.0.0.5:4000", 13, both, &why));
+	plc = both[0];
+	TEST_ASSERT_EQUAL_INT(1, listen_parse("10.0.0.6:4000", 13, both, &why));
+	other = both[0];
+}
+
+void tearDown(void)
+{
+	for (unsigned i = 0; i < WRITERS; i++)
+		face_way_close(&w.writers[i].way);
+	log_destroy(face.log);
+	instance_end(&in);
+}
+
+static void test_a_client_is_a_controller_that_beats_as_long_as_it_asks(void)
+{
+	struct controller_beat beat;
+	uint32_t before;
+
+	writing_heard(&w, &plc, true); /* it has not commanded */
+	TEST_ASSERT_EQUAL_UINT(0, instance_controllers(&in));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_UINT(1, instance_controllers(&in));
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(3000, beat.period_ms);
+	before = beat.beat;
+	writing_heard(&w, &other, false);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(before, beat.beat);
+	plc.port = 4001; /* another connection of it */
+	writing_heard(&w, &plc, false);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(before + 1, beat.beat);
+	/* from its first beat in the register on, that alone counts */
+	writing_heard(&w, &plc, true);
+	writing_heard(&w, &plc, false);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(before + 2, beat.beat);
+	config.modbus.write = false;
+	writing_heard(&w, &plc, true);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(before + 2, beat.beat);
+	TEST_ASSERT_EQUAL_UINT64(1, w.taken);
+}
+
+static void test_what_is_refused_is_so_by_the_exception_that_fits(void)
+{
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_set(&w, "pump", 2.5, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_set(&w, "nothing", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &plc, ows_now() - 3 * S));
+	TEST_ASSERT_EQUAL_UINT64(3, w.refused);
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_FAILURE, writing_refusal(-EACCES));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_refusal(-EROFS));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_refusal(-ESTALE));
+	for (uint8_t i = 0; i < WRITERS; i++) {
+		other.bytes[3] = (uint8_t)(100 + i);
+		TEST_ASSERT_EQUAL_INT(i == WRITERS - 1 ? EXCEPTION_BUSY : EXCEPTION_NONE,
+		                      writing_set(&w, "pump", 1, &other, ows_now()));
+	}
+}
+
+static void test_a_client_may_what_the_configuration_says(void)
+{
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_may(&w, NULL, &other));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_may(&w, "pump", &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_may(&w, "pump", &other));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_may(&w, "valve", &plc));
+	config.modbus.write = false;
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_FUNCTION, writing_may(&w, "pump", &plc));
+}
+
+static void test_a_client_that_promised_a_beat_is_lost_at_the_end_and_says_no_goodbye(void)
+{
+	struct controller_beat beat;
+
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &plc, ows_now()));
+	writing_close(&w);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_FALSE(beat.goodbye);
+	config.modbus.beat_ns = 0;
+	writing_close(&w);
+	TEST_ASSERT_NULL(w.writers[0].way.h);
+}
+
+static void test_a_person_has_the_end_of_a_long_address(void)
+{
+	struct listen_address both[2];
+	char person[WRITING_PERSON];
+	const char *why, *text = "[2001:db8:1111:2222:3333:4444:5555:6666]:1";
+
+	TEST_ASSERT_EQUAL_STRING("modbus:10.0.0.5", writing_person(&plc, person));
+	TEST_ASSERT_EQUAL_INT(1, listen_parse(text, strlen(text), both, &why));
+	TEST_ASSERT_EQUAL_STRING("modbus:2222:3333:4444:5555:6666", writing_person(both, person));
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_a_client_is_a_controller_that_beats_as_long_as_it_asks);
+	RUN_TEST(test_what_is_refused_is_so_by_the_exception_that_fits);
+	RUN_TEST(test_a_client_may_what_the_configuration_says);
+	RUN_TEST(test_a_client_that_promised_a_beat_is_lost_at_the_end_and_says_no_goodbye);
+	RUN_TEST(test_a_person_has_the_end_of_a_long_address);
+	return UNITY_END();
+}
