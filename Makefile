@@ -129,7 +129,7 @@ ALL_CXXFLAGS = -std=c++11 $(CPP_COMMON) $(CXXWARN) $(HARDEN) $(CPPFLAGS) $(CXXFL
 RELR     := -Wl,-z,pack-relative-relocs
 RELR     := $(shell printf '\043include <stdint.h>\n\043if !defined __GLIBC__ || !__GLIBC_PREREQ(2, 36)\n\043error\n\043endif\nint main(void) { return 0; }\n' | \
               $(CC) $(filter -m%,$(CFLAGS) $(EXTRA_CFLAGS)) -fPIE -pie -Wl,--fatal-warnings $(RELR) -x c -o /dev/null - 2>/dev/null && echo '$(RELR)')
-ALL_LDFLAGS = -pie -Wl,-z,relro,-z,now $(RELR) $(if $(SECTIONS),-Wl$(comma)--gc-sections) $(LDFLAGS) $(EXTRA_CFLAGS)
+ALL_LDFLAGS = -pie -Wl,-z,relro -Wl,-z,now $(RELR) $(if $(SECTIONS),-Wl$(comma)--gc-sections) $(LDFLAGS) $(EXTRA_CFLAGS)
 LIBS     := -Wl,--as-needed -lm -pthread
 # Debian's musl-gcc knows its own headers alone; those of the kernel are beside glibc's
 ifneq ($(findstring musl-gcc,$(CC)),)
@@ -399,7 +399,7 @@ $(B)/libows/%.map:
 $(LIBRARIES:%=$(B)/%.so.$(VERSION)): $(B)/%.so.$(VERSION): $(B)/libows/%.map $(B)/with/ld
 	$(call show,LD)
 	$(Q)$(CC) -shared -Wl,-soname,$*.so.$(SOMAJOR) -Wl,--version-script,$(B)/libows/$*.map \
-	    -Wl,-z,relro,-z,now $(if $(findstring sanitize,$(EXTRA_CFLAGS)),,-Wl,-z,defs) \
+	    -Wl,-z,relro -Wl,-z,now $(if $(findstring sanitize,$(EXTRA_CFLAGS)),,-Wl,-z,defs) \
 	    $(LDFLAGS) $(EXTRA_CFLAGS) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LIBS)
 	@ln -sf $(@F) $(B)/$*.so.$(SOMAJOR)
 	@ln -sf $(@F) $(B)/$*.so
