@@ -57,7 +57,7 @@ LOOKED_AT = {
     "mbpoll": [r"-m tcp -0 -1 -t 4:float -B -r 46002 -c 3 192\.168\.1\.10"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
     "halcompile": [r"--install --userspace --extra-link-args=-lows owsd_hal\.c"],
-    "curl": [r"-fsS -o /etc/apt/sources\.list\.d/owsd\.sources https://packages\.example\.org/owsd/\w+\.sources"],
+    "wget": [r"-O \S*/etc/apt/sources\.list\.d/owsd\.sources https://packages\.example\.org/owsd/\w+\.sources"],
     "gpg": [r"--quick-generate-key owsd packages <packages@example\.org> ed25519 sign 2y",
             r"--list-keys --with-colons packages@example\.org", "--show-keys", "--quick-set-expire OLD 2y"],
     "rsync": [r"-a( --exclude InRelease)? build/repository/ packages\.example\.org:/srv/www/owsd"],
