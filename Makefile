@@ -590,7 +590,7 @@ endif
 	@$(MAKE) --no-print-directory all
 	@exec env OWSD_BUILD=$(abspath $(B)) sh board/demo/run '$(TARGET)'
 
-benches: all $(BENCHES)
+benches: all $(BENCHES) $(B)/system/serial $(B)/system/serial.so
 
 $(B)/bench/%: tests/bench/%.c $(BENCH_AID) $(B)/core.a $(B)/with/cc $(B)/with/ld
 	$(call program)

@@ -24,6 +24,7 @@
 
 #define FLAG_PERSIST 0x4
 #define TYPE_READ 2
+#define TYPE_WRITE 3
 #define TYPE_DIRALL 7
 
 int64_t bench_now(void)
@@ -142,6 +143,29 @@ int64_t bench_cpu_ns(pid_t pid)
 	return (int64_t)(user + system) * (1000000000 / sysconf(_SC_CLK_TCK));
 }
 
+pid_t bench_start(const char *program, const char *const arguments[], int in, int out)
+{
+	pid_t pid = fork();
+
+	if (pid != 0)
+		return pid;
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	if (in >= 0)
+		dup2(in, STDIN_FILENO);
+	if (out >= 0)
+		dup2(out, STDOUT_FILENO);
+	execvp(program, (char *const *)(uintptr_t)arguments);
+	_exit(127);
+}
+
+void bench_stop(pid_t pid, int signal)
+{
+	if (pid <= 0)
+		return;
+	kill(pid, signal);
+	waitpid(pid, NULL, 0);
+}
+
 int bench_port(void)
 {
 	struct sockaddr_in a = {.sin_family = AF_INET};
@@ -191,30 +215,34 @@ int bench_socket_once(int port)
 	return connect_from(0x7f010000 + turn, port);
 }
 
-static bool request(int fd, uint32_t type, uint32_t flags, const char *path, size_t size)
+/* text: what is written, of size bytes; NULL: size bytes are expected. */
+static bool request(int fd, uint32_t type, uint32_t flags, const char *path, const char *text,
+                    size_t size)
 {
 	char frame[24 + 256];
-	uint32_t len = (uint32_t)strlen(path) + 1, word[6];
+	uint32_t len = (uint32_t)strlen(path) + 1, all = len + (text ? (uint32_t)size : 0), word[6];
 
 	word[0] = 0;
-	word[1] = htonl(len);
+	word[1] = htonl(all);
 	word[2] = htonl(type);
 	word[3] = htonl(flags | 0x100);
 	word[4] = htonl((uint32_t)size);
 	word[5] = 0;
 	memcpy(frame, word, 24);
 	memcpy(frame + 24, path, len);
-	return send(fd, frame, 24 + len, MSG_NOSIGNAL) == (ssize_t)(24 + len);
+	if (text)
+		memcpy(frame + 24 + len, text, size);
+	return send(fd, frame, 24 + all, MSG_NOSIGNAL) == (ssize_t)(24 + all);
 }
 
 bool bench_send(int fd, const char *path)
 {
-	return request(fd, TYPE_READ, FLAG_PERSIST, path, 64);
+	return request(fd, TYPE_READ, FLAG_PERSIST, path, NULL, 64);
 }
 
 bool bench_send_once(int fd, const char *path)
 {
-	return request(fd, TYPE_READ, 0, path, 64);
+	return request(fd, TYPE_READ, 0, path, NULL, 64);
 }
 
 int bench_receive(int fd, char *data, size_t size)
@@ -243,12 +271,21 @@ int bench_receive(int fd, char *data, size_t size)
 
 static int ask(int fd, uint32_t type, const char *path, char *data, size_t size)
 {
-	return request(fd, type, FLAG_PERSIST, path, size) ? bench_receive(fd, data, size) : -1;
+	return request(fd, type, FLAG_PERSIST, path, NULL, size) ? bench_receive(fd, data, size)
+	                                                         : -1;
 }
 
 int bench_read(int fd, const char *path, char *data, size_t size)
 {
 	return ask(fd, TYPE_READ, path, data, size);
+}
+
+bool bench_write(int fd, const char *path, const char *text)
+{
+	char answer[64];
+
+	return request(fd, TYPE_WRITE, FLAG_PERSIST, path, text, strlen(text)) &&
+	       bench_receive(fd, answer, sizeof(answer)) >= 0;
 }
 
 static bool list_paths(struct bench_peer *peer)

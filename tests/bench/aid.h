@@ -27,6 +27,10 @@ void bench_distribution(const char *name, double *values, size_t n, const char *
 /* CPU time a process has used, ns (user and system, by the kernel's ticks). */
 int64_t bench_cpu_ns(pid_t pid);
 
+/* A program, its standard input and output if they are not less than 0; ended with the bench. */
+pid_t bench_start(const char *program, const char *const arguments[], int in, int out);
+void bench_stop(pid_t pid, int signal);
+
 /*
  * A place of the bench's own for owsd and libows, in memory as a real one; removed with all that is
  * in it when the bench ends.
@@ -55,7 +59,8 @@ int bench_socket(int port);
 int bench_socket_once(int port);
 /* Returns the length of the answer or -1. */
 int bench_read(int fd, const char *path, char *data, size_t size);
-/* Its two halves. */
+bool bench_write(int fd, const char *path, const char *text);
+/* The two halves of a reading. */
 bool bench_send(int fd, const char *path);
 /* The connection ends with the answer. */
 bool bench_send_once(int fd, const char *path);

@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -161,24 +160,6 @@ static bool on_the_simulators_clock(void)
 }
 
 /* --- behind a client */
-static pid_t start(const char *program, const char *const arguments[])
-{
-	pid_t pid = fork();
-
-	if (pid == 0) {
-		prctl(PR_SET_PDEATHSIG, SIGKILL);
-		execvp(program, (char *const *)(uintptr_t)arguments);
-		_exit(127);
-	}
-	return pid;
-}
-
-static void stop(pid_t pid, int signal)
-{
-	kill(pid, signal);
-	waitpid(pid, NULL, 0);
-}
-
 static bool all_there(struct walk *walk, char *their, size_t size)
 {
 	for (int i = 0; i < 300; i++) {
@@ -237,7 +218,7 @@ static bool owsd(const char *program)
 	snprintf(target, sizeof(target), "sim:%s", scenario);
 	snprintf(port, sizeof(port), "%u", at);
 	snprintf(instance, sizeof(instance), "bench-%d", (int)getpid());
-	pid = start(program, arguments);
+	pid = bench_start(program, arguments, -1, -1);
 	walk_init(&ours, at);
 	if (all_there(&ours, names, sizeof(names)))
 		ms = listing(&ours, names);
@@ -246,7 +227,7 @@ static bool owsd(const char *program)
 	if (ms >= 0)
 		figures(&ours, ms, "");
 	walk_end(&ours);
-	stop(pid, SIGTERM);
+	bench_stop(pid, SIGTERM);
 	return ms >= 0;
 }
 
@@ -267,7 +248,7 @@ static void owserver(void)
 		len += (size_t)snprintf(tester + len, sizeof(tester) - len, "%s%.2s",
 		                        len ? "," : "--tester=", name);
 	snprintf(address, sizeof(address), "127.0.0.1:%u", at);
-	pid = start("owserver", arguments);
+	pid = bench_start("owserver", arguments, -1, -1);
 	walk_init(&theirs, at);
 	usleep(500000);
 	if (walk_scan(&theirs, false, their_names, sizeof(their_names)) > 0)
@@ -278,7 +259,7 @@ static void owserver(void)
 		bench_note(
 			"devices.list.owserver left out: owserver is not installed or did not start");
 	walk_end(&theirs);
-	stop(pid, SIGKILL);
+	bench_stop(pid, SIGKILL);
 }
 
 int main(int argc, char **argv)

@@ -33,6 +33,8 @@ static struct sim_serial serial;
 static bool paced, strict;
 static int64_t leapt_ns; /* over waiting */
 static uint64_t pull_at; /* the adapter is pulled after this byte; 0: never */
+static uint64_t turns;   /* so often the host went on after an answer */
+static bool answered;
 
 static int64_t now(void)
 {
@@ -68,11 +70,11 @@ static void stats(void)
 	for (size_t i = 0; i < wire->count; i++)
 		conversions += wire->slaves[i]->conversions;
 	printf("bytes %llu answers %llu overruns %llu resets %llu slots %llu conversions %llu "
-	       "master_resets %llu baud %u\n",
+	       "master_resets %llu turns %llu baud %u\n",
 	       (unsigned long long)serial.bytes, (unsigned long long)serial.answered,
 	       (unsigned long long)serial.overruns, (unsigned long long)wire->resets,
 	       (unsigned long long)wire->slots, conversions,
-	       (unsigned long long)serial.master_resets, serial.baud);
+	       (unsigned long long)serial.master_resets, (unsigned long long)turns, serial.baud);
 }
 
 static void command(const char *line)
@@ -121,6 +123,8 @@ static void take_bytes(int port)
 	ssize_t n = read(port, bytes, sizeof(bytes));
 	uint32_t baud = host_baud(port);
 
+	turns += n > 0 && answered;
+	answered &= n <= 0;
 	for (ssize_t i = 0; i < n && !is_pulled(); i++)
 		sim_serial_send(&serial, bytes[i], baud, now());
 }
@@ -141,6 +145,7 @@ static int64_t give_bytes(int port)
 		byte = sim_serial_take(&serial, baud);
 		if (write(port, &byte, 1) != 1)
 			break;
+		answered = true;
 	}
 	return -1;
 }

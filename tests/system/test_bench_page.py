@@ -38,6 +38,9 @@ def some_output():
              "family_text.median 1576 bytes", "family_text.largest 45444 bytes",
              "family_text.with_shared_parts 289 KiB", "family_own.mean 556 bytes",
              "family_own.with_shared_parts 36.59 KiB"]
+    lines += [f"{scheme}.{what}{who} 1.50 s" for scheme in ("serial", "uart") for who in ("", ".owserver")
+              for what in ("scan.1", "scan.10", "scan.50", "scan.50.trips", "scratchpad.trips", "cpu.20",
+                           "cpu.20.readings")]
     for who in ("", ".owserver"):
         lines += [f"devices.list{who} {100 if who else 40} ms", f"devices.list.directories{who} 300 directories",
                   f"devices.list.properties{who} 2000 properties", f"devices.list.each{who} 130 us"]
