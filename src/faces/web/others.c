@@ -2,6 +2,7 @@
 /* Asks the pages of other machines, each on a thread, and keeps what they answered last. */
 #include <errno.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -15,6 +16,8 @@
 #define DEADLINE_NS (2 * NS_PER_S)
 #define OLD_NS (30 * NS_PER_S) /* an answer that old counts no more, whatever holds up the next */
 #define STACK (256u << 10)     /* of a thread: an answer, and what the resolver wants */
+/* At once, with those of lists before, which a silent name server may hold. */
+#define THREADS_MAX (2u * OTHERS_MAX)
 
 struct other {
 	struct others *all;
@@ -36,6 +39,8 @@ struct others {
 	unsigned count;
 	struct other other[];
 };
+
+static atomic_uint threads;
 
 /* Under the lock, which it gives back. */
 static void leave(struct others *others)
@@ -92,6 +97,7 @@ static void *ask_again(void *ctx)
 			continue;
 	}
 	leave(all);
+	threads--;
 	return NULL;
 }
 
@@ -101,11 +107,16 @@ static bool start(struct other *other)
 	pthread_t thread;
 	bool is;
 
+	if (threads >= THREADS_MAX)
+		return false;
+	threads++;
 	pthread_attr_init(&how);
 	pthread_attr_setdetachstate(&how, PTHREAD_CREATE_DETACHED);
 	pthread_attr_setstacksize(&how, STACK);
 	is = pthread_create(&thread, &how, ask_again, other) == 0;
 	pthread_attr_destroy(&how);
+	if (!is)
+		threads--;
 	return is;
 }
 
