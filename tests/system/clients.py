@@ -221,6 +221,29 @@ def _install(wanted, packages):
         fresh.rename(packages)
 
 
+def environment(name, wanted):
+    """The folder of the programs of these packages, in a venv of the user's cache; made once, from
+    the package index."""
+    base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
+    try:
+        base.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        base = owsdtest.BUILD
+    place, mark = base / name, "\n".join(wanted)
+    with open(base / f"{name}.lock", "w", encoding="ascii") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (place / "wanted").exists() or (place / "wanted").read_text() != mark:
+            shutil.rmtree(place, ignore_errors=True)
+            for command in ([sys.executable, "-m", "venv", place],
+                            [place / "bin/python", "-m", "pip", "-q", "--retries", "1", "install", *wanted]):
+                done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+                if done.returncode:
+                    shutil.rmtree(place, ignore_errors=True)
+                    owsdtest.skip(f"not cached and cannot be had: {wanted[0]}: {done.stderr.strip()[-200:]}")
+            (place / "wanted").write_text(mark)
+    return place / "bin"
+
+
 class Pyownet(Client):
     """pyownet, a connection for each request; PyownetPersistent keeps one."""
 

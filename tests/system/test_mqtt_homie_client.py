@@ -3,19 +3,14 @@
 """What a genuine controller of Homie 5 (ebus-sdk) makes of owsd-mqtt: it finds the device, follows its
 values, sees when one is bad, and its commands move outputs."""
 
-import fcntl
 import os
-import pathlib
-import shutil
-import subprocess
-import sys
 
+import clients
 import owsdtest
 from mqtthouse import RELAY, ROOM, SENSOR, House, item
 from owsdtest import raw, until
 
 WANTED = ["ebus-sdk==0.27.0", "ebus-mqtt-client==0.8.0", "paho-mqtt==2.1.0"]
-INSTALL_SECONDS = 300
 # A line for each thing that it notices; it carries out the lines that come
 CONTROLLER = """
 import sys
@@ -32,30 +27,8 @@ for line in sys.stdin:
 """
 
 
-def python():
-    """The Python that has the controller, out of the user's cache or, once, from the package index."""
-    base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
-    try:
-        base.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        base = owsdtest.BUILD
-    place, mark = base / "homie", "\n".join(WANTED)
-    with open(base / "homie.lock", "w", encoding="ascii") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (place / "wanted").exists() or (place / "wanted").read_text() != mark:
-            shutil.rmtree(place, ignore_errors=True)
-            for command in ([sys.executable, "-m", "venv", place],
-                            [place / "bin/python", "-m", "pip", "-q", "--retries", "1", "install", *WANTED]):
-                done = subprocess.run(command, capture_output=True, text=True, timeout=INSTALL_SECONDS, check=False)
-                if done.returncode:
-                    shutil.rmtree(place, ignore_errors=True)
-                    owsdtest.skip(f"not cached and cannot be had: ebus-sdk: {done.stderr.strip()[-200:]}")
-            (place / "wanted").write_text(mark)
-    return place / "bin/python"
-
-
 def test_it_finds_the_device_follows_it_and_commands_it(scene):
-    program = python()
+    program = clients.environment("homie", WANTED) / "python"
     house = House(scene, ROOM, RELAY, item("pull", "/simulator/unplug", "bool", "output"), Profile="homie5",
                   wire=f"button unplug unplug {SENSOR}\n", Write=raw("on"))
     orders = scene.path / "orders"
