@@ -74,10 +74,36 @@ def test_the_first_line_is_the_remedy_of_what_is_wrong_on_the_wire(scene):
         daemon.stop()
 
 
+def test_a_sensor_without_supply_and_a_dead_bridge_are_the_first_line(scene):
+    daemon = house(scene, "at 0s set living temperature 127.937", LIVING)
+    first_lines(scene, daemon, "look at its supply line")
+    daemon.stop()
+    plant = scene.file("plant.sim", BUSES + CHIPS.split("DS2408")[0] + "chip DS2482-100 0x19\n"
+                       "DS2408 29.000000000001 as relays\nat 5s refuse 0x19 for 10h\n")
+    relay = dict(Name="relay", Path="/29.000000000001/sensed.0", Type=raw("bool"), IO=raw("input"))
+    daemon = scene.owsd(owsdtest.rio(f"sim:{plant}", [LIVING, relay], Period=0.05, MaxRetries=0))
+    said = first_lines(scene, daemon, "look at its supply, SDA, SCL")
+    assert "relay: target down: not found, and a bridge chip of the target does not answer" in said
+
+
+def test_a_broker_that_is_away_is_the_first_line(scene):
+    program = owsdtest.BUILD / "owsd-mqtt"
+    owsdtest.need(program)
+    plant, port = scene.file("plant.sim", BUSES + CHIPS), owsdtest.free_port()
+    block = f'  Mqtt {{ Broker "mqtt://127.0.0.1:{port}" }}\n'
+    daemon = scene.owsd(owsdtest.rio(f"sim:{plant}", [LIVING]).replace("  Item", block + "  Item", 1))
+    scene.start([program, "-n", daemon.name, "-c", daemon.config])
+    said = first_lines(scene, daemon, "")
+    scene.until(lambda: "does a broker run there?" in scene.owsctl(daemon, "doctor").stdout.split("\n")[0],
+                40, said)
+
+
 def test_a_path_that_is_wrong_is_the_first_line(scene):
     typo = dict(LIVING, Name="typo", Path="/28.A10000000000/temprature")
     kind = dict(LIVING, Name="kind", Path="/28.A10000000000/type")
-    for item, wanted in ((typo, "check its spelling"), (kind, "choose another Type")):
+    fixed = dict(LIVING, Name="fixed", IO=raw("output"), InitValue=1)
+    for item, wanted in ((typo, "check its spelling"), (kind, "choose another Type"),
+                         (fixed, "IO input reads it")):
         daemon = house(scene, "", item)
         first_lines(scene, daemon, wanted)
         daemon.stop()
