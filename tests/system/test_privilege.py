@@ -331,6 +331,21 @@ def test_another_users_owsd_of_that_name_is_refused_and_harms_nothing(scene):
     assert mine.stop() == 0
 
 
+def test_the_doctor_names_the_group_that_is_missing_and_two_owsd_of_one_name(scene):
+    daemon = daemon_of(scene)
+    good(scene, daemon.name)
+    done = ctl(scene, "stranger", daemon.name, "doctor")
+    assert done.returncode == 1, done
+    assert done.stdout.startswith("1. sudo adduser stranger owsd    # then log in again\n"
+                                  "   stranger may not look at the signals\n"), done
+    home = folder_of("reader", private.room() / "reader")
+    own = at_home("reader", XDG_RUNTIME_DIR=home)
+    mine = scene.start([*own, programs() / "owsd-sim", "-n", daemon.name, "-c", daemon.config])
+    doctor = [*own, programs() / "owsctl", "-n", daemon.name, "doctor"]
+    until(lambda: f"1. kill {mine.process.pid} " in scene._run(doctor, 30).stdout, 30,
+          lambda: scene._run(doctor, 30).stdout)
+
+
 # Where the image is that a program has mapped
 PLACE = """
 import os

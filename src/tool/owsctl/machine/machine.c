@@ -19,7 +19,7 @@
 #include "src/tool/owsctl/machine/seen.h"
 #include "src/tool/owsctl/machine/units.h"
 
-#define ROOM_KB 4096 /* the image of 10 000 signals, or some minutes of history */
+#define ROOM_KB 1024 /* the image of 2 000 signals, or some minutes of history */
 #define SHOWN 3      /* of the errors of a file, and of the warnings */
 
 void check_disk(struct doctor *d)
@@ -134,7 +134,7 @@ static bool lacks(const struct doctor *d, bool (*needs)(const char *target))
 		if (needs(d->config->targets[i].text))
 			return true;
 	/* a machine on which nothing was set up is to have a DS2482 */
-	return !d->alive && !d->config && needs == needs_board;
+	return d->err == -ENOENT && !d->config && needs == needs_board;
 }
 
 static bool is_of_person(const struct board_line *line)
