@@ -229,6 +229,35 @@ def test_addresses_stay_when_signals_are_added_removed_sorted_renamed_and_replac
     assert face.stop() == 0
 
 
+def test_owsctl_shows_the_addresses_as_table_csv_json_and_as_the_file_of_map(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, ROOM, ABSENT, {**CELLAR, "Unit": "°C"}))
+
+    def owsctl(*arguments):
+        return scene.owsctl(daemon, *arguments, "-d", scene.path / "state")
+    assert "has owsd-modbus run for" in owsctl("modbus-map").stderr
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(3, GOOD)
+        rows = json.loads(owsctl("--json", "modbus-map").stdout)
+        assert [row["name"] for row in rows] == ["room", "absent", "cellar"]
+        assert rows[2] == {"place": 3, "record": 48, "float32": 46006, "float64": 56012, "name": "cellar",
+                           "type": "double", "io": "input", "unit": "°C", "identity": CELLAR["Path"]}
+        assert plc.number_at(rows[2]["float32"], ">f") == plc.number_at(rows[2]["float64"], ">d") == -3.25
+        assert plc.number_at(rows[2]["record"], ">d") == -3.25
+        daemon.config.write_text(text(scene, port, ROOM, CELLAR))
+        assert scene.owsctl(daemon, "reload").returncode == 0
+        plc.becomes(2, NO_PROPERTY)
+    lines = owsctl("modbus-map", "--csv").stdout.splitlines()
+    assert lines[0] == "place,record,float32,float64,name,type,io,unit,identity"
+    assert lines[2] == f'"2","32","46004","56008","","","","","{ABSENT["Path"]}"'
+    assert re.search(r"^ *3 +48 +46006 +56012 +cellar +double +input", owsctl("modbus-map").stdout, re.M)
+    kept = owsctl("modbus-map", "--keep").stdout
+    assert kept == "".join(line for line in (scene.path / "state/map").read_text().splitlines(True) if line[0] != "#")
+    assert owsctl("--json", "modbus-map", "--csv").returncode == 2
+    assert face.stop() == 0
+
+
 def test_places_of_the_configuration_win_and_a_map_that_is_none_serves_nothing(scene):
     port = free_port()
     fixed = scene.file("fixed", f"# by hand\n700 {SENSOR}/temperature\n")

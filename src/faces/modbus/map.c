@@ -9,6 +9,8 @@
 #include "src/faces/modbus/map.h"
 #include "src/history/file/place.h"
 
+#define PROGRAM "owsd-modbus"
+#define WHAT "modbus"
 #define LINE_MOST 512
 
 static int map_put(struct map *map, unsigned place, const char *identity)
@@ -121,12 +123,25 @@ void map_free(struct map *map)
 	*map = (struct map){0};
 }
 
-int map_path(const char *instance, char *path, size_t size)
+static int in_directory(int err, const char *directory, char path[MAP_PATH])
+{
+	if (!err)
+		snprintf(path, MAP_PATH, "%s/map", directory);
+	return err;
+}
+
+int map_path(const char *instance, char path[MAP_PATH])
 {
 	char directory[HISTORY_PATH];
-	int err = history_place_state("owsd-modbus", "modbus", instance, directory);
 
-	if (err)
-		return err;
-	return snprintf(path, size, "%s/map", directory) < (int)size ? 0 : -ENAMETOOLONG;
+	return in_directory(history_place_state(PROGRAM, WHAT, instance, directory), directory,
+	                    path);
+}
+
+int map_path_found(const char *instance, char path[MAP_PATH])
+{
+	char directory[HISTORY_PATH];
+
+	return in_directory(history_place_state_found(PROGRAM, WHAT, instance, directory),
+	                    directory, path);
 }

@@ -34,5 +34,8 @@ int map_write(const struct map *map, const char *path);
 int map_place(struct map *map, const char *identity);
 void map_free(struct map *map);
 
+#define MAP_PATH 264
 /* Where the service, or this user, keeps that of the instance. -ENAMETOOLONG. */
-int map_path(const char *instance, char *path, size_t size);
+int map_path(const char *instance, char path[MAP_PATH]);
+/* Where a reader finds it: that of this user, or if that is missing of the service. */
+int map_path_found(const char *instance, char path[MAP_PATH]);

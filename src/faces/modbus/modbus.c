@@ -215,7 +215,8 @@ static void make_places(struct modbus *m)
 	if (left_out)
 		log_err(m->face->log, "%u signals have no address: there are %d", left_out,
 		        LAYOUT_PLACES - 1);
-	if (m->map.last != last || !m->kept)
+	/* it has the fixed places, too: owsctl reads it */
+	if (m->map.last != last || !m->kept || fixed)
 		keep_map(m);
 }
 
@@ -226,7 +227,7 @@ static int lock_map(struct modbus *m)
 	int fd, lock;
 
 	m->lock = -1;
-	if (map_path(m->face->arguments->instance, m->path, sizeof(m->path)))
+	if (map_path(m->face->arguments->instance, m->path))
 		m->path[0] = '\0';
 	if (history_make_above(m->path))
 		return 0;

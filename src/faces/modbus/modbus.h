@@ -25,8 +25,8 @@ struct modbus {
 	struct writing writing;
 	struct map map;
 	struct served served[LAYOUT_PLACES];
-	char path[HISTORY_PATH + 8]; /* of the map; "": none */
-	int lock;                    /* of its directory; below 0: none */
+	char path[MAP_PATH]; /* of the map; "": none */
+	int lock;            /* of its directory; below 0: none */
 	unsigned signals, decimals;
 	bool known, kept; /* the map was read; it is in its file */
 	uint32_t generation;

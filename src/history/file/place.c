@@ -62,13 +62,19 @@ int history_place(const char *instance, char path[HISTORY_PATH])
 	return history_place_state(RECORDER, WHAT, instance, path);
 }
 
-int history_place_found(const char *instance, char path[HISTORY_PATH])
+int history_place_state_found(const char *program, const char *what, const char *instance,
+                              char path[HISTORY_PATH])
 {
-	int err = of_user(RECORDER, WHAT, instance, path);
+	int err = of_user(program, what, instance, path);
 
 	if (!err && access(path, F_OK) == 0)
 		return 0;
-	return of_service(RECORDER, instance, path);
+	return of_service(program, instance, path);
+}
+
+int history_place_found(const char *instance, char path[HISTORY_PATH])
+{
+	return history_place_state_found(RECORDER, WHAT, instance, path);
 }
 
 int history_make_above(const char *path)

@@ -22,6 +22,8 @@ int history_place_state(const char *program, const char *what, const char *insta
  * a service too: STATE_DIRECTORY is its own then, and does not count.
  */
 int history_place_found(const char *instance, char path[HISTORY_PATH]);
+int history_place_state_found(const char *program, const char *what, const char *instance,
+                              char path[HISTORY_PATH]);
 /* Make the directories above path, mode 0750, as far as they are missing. 0 or a negative errno. */
 int history_make_above(const char *path);
 /*

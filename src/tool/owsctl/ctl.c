@@ -106,6 +106,7 @@ static const struct option *longs_of(const char *options)
 		{"until", required_argument, NULL, 'u'},
 		{"csv", no_argument, NULL, 'C'},
 		{"influx", no_argument, NULL, 'I'},
+		{"keep", no_argument, NULL, 'k'},
 		{"directory", required_argument, NULL, 'd'},
 		{"dry-run", no_argument, NULL, 'D'},
 		{"fix", no_argument, NULL, 'F'},

@@ -93,6 +93,12 @@ static const struct verb verbs[] = {
 	{"disable", "[--dry-run] web|mqtt|history|...", "switch a program beside owsd off",
          verb_disable, .options = "  --dry-run  print the commands alone\n",
          .example = "disable web"},
+	{"modbus-map", "[-d DIR] [--csv | --keep]",
+         "at which addresses owsd-modbus serves each signal", verb_modbus_map,
+         .options = "  -d DIR  where owsd-modbus keeps the map (--directory)\n"
+                    "  --csv   a line for each place, for other programs; --json too\n"
+                    "  --keep  as the file that the key Map of the Modbus block names\n",
+         .example = "modbus-map --csv", .finds = true},
 	{"instances", "", "list the owsd that run here, and those that have run", verb_instances,
          .example = "instances"},
 	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove,
@@ -142,7 +148,7 @@ static void print_verbs(FILE *out)
 	fprintf(out, "usage: %s [-n NAME | -t TARGET] [--json] VERB ...\n",
 	        program_invocation_short_name);
 	for (size_t i = 0; i < VERBS; i++)
-		fprintf(out, "  %-9s %s\n", verbs[i].name, verbs[i].brief);
+		fprintf(out, "  %-10s %s\n", verbs[i].name, verbs[i].brief);
 	fputs("owsctl help VERB shows what a verb takes; before the verb there may be:\n"
 	      "  -n NAME    instance; default: OWS_NAME of the environment, else OWS;\n"
 	      "  -t TARGET  what dir, read, write and scan open\n"

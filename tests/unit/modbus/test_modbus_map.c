@@ -105,12 +105,14 @@ static void test_a_file_that_is_none_is_refused_with_its_line(void)
 
 static void test_the_service_keeps_it_in_its_state_directory(void)
 {
-	char at[64];
+	char at[MAP_PATH];
 
 	setenv("STATE_DIRECTORY", folder, 1);
-	TEST_ASSERT_EQUAL_INT(0, map_path("OWS", at, sizeof(at)));
+	TEST_ASSERT_EQUAL_INT(0, map_path("OWS", at));
 	TEST_ASSERT_EQUAL_STRING(path, at);
-	TEST_ASSERT_EQUAL_INT(-ENAMETOOLONG, map_path("OWS", at, 8));
+	setenv("XDG_STATE_HOME", "/nowhere", 1);
+	TEST_ASSERT_EQUAL_INT(0, map_path_found("OWS", at));
+	TEST_ASSERT_EQUAL_STRING("/var/lib/owsd-modbus/OWS/map", at);
 	unsetenv("STATE_DIRECTORY");
 	TEST_ASSERT_EQUAL_INT(-ENOENT, map_write(&map, "/nowhere/map"));
 }
