@@ -43,7 +43,7 @@ LOOKED_AT = {
                   rf"(enable|disable)( --now)? {UNIT}( {UNIT})*", "daemon-reload"],
     "journalctl": [rf"-u {UNIT}( -f| -e)?"],
     "systemd-analyze": [rf"security {UNIT}"],
-    "adduser": [rf"\w+ {GROUPS}"],
+    "adduser": [rf"[\w-]+ {GROUPS}"],
     "usermod": [rf"-aG {GROUPS} [\w-]+"],
     "raspi-config": ["", "nonint do_i2c 0"],
     "modprobe": ["i2c-dev", "ds2482", "w1-gpio", "w1_therm"],

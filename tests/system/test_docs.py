@@ -368,7 +368,7 @@ def check_inline(stage, code, written):
 
 def check_usage(program, words):
     """Placeholders may stand for values, as in `owsctl set NAME VALUE`: so the help is asked."""
-    verb = [w for before, w in zip(["", *words], words) if re.match(r"[a-z]+$", w) and
+    verb = [w for before, w in zip(["", *words], words) if re.match(r"[a-z][a-z-]*$", w) and
             before not in ("-n", "-t")][:1] if program.startswith("owsctl") else []
     helps = [subprocess.run([owsdtest.BUILD / program, *v, "--help"], capture_output=True, text=True,
                             check=False) for v in ([], verb)]
