@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <poll.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -55,14 +56,20 @@ static void run_clients(void)
 		clients_take(&clients);
 }
 
-static int join(void)
+static void connect_to(int fd)
 {
 	struct sockaddr_in at;
 	socklen_t len = sizeof(at);
-	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 
 	TEST_ASSERT_EQUAL_INT(0, getsockname(clients.listeners[0], (struct sockaddr *)&at, &len));
 	TEST_ASSERT_EQUAL_INT(0, connect(fd, (struct sockaddr *)&at, sizeof(at)));
+}
+
+static int join(void)
+{
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+
+	connect_to(fd);
 	run_clients();
 	return fd;
 }
@@ -149,6 +156,29 @@ static void test_of_one_address_the_most_silent_gives_way(void)
 	close(third);
 }
 
+static void test_without_a_descriptor_the_most_silent_gives_way_too(void)
+{
+	struct rlimit had, none;
+	int first = join(), second, fds[2];
+
+	TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &had));
+	second = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	TEST_ASSERT_EQUAL_INT(0, pipe(fds));
+	none = had;
+	none.rlim_cur = (rlim_t)fds[0]; /* the numbers below are taken */
+	close(fds[0]);
+	close(fds[1]);
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none));
+	connect_to(second);
+	run_clients();
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &had));
+	TEST_ASSERT_EQUAL_INT(-1, got(first));
+	TEST_ASSERT_EQUAL_INT(0, got(second));
+	TEST_ASSERT_EQUAL_UINT(1, clients.count);
+	close(first);
+	close(second);
+}
+
 static void test_without_the_block_all_are_closed(void)
 {
 	int fd = join();
@@ -167,6 +197,7 @@ int main(void)
 	RUN_TEST(test_one_that_owes_the_rest_of_a_request_is_closed_and_a_silent_one_is_not);
 	RUN_TEST(test_what_is_no_request_closes_the_connection);
 	RUN_TEST(test_of_one_address_the_most_silent_gives_way);
+	RUN_TEST(test_without_a_descriptor_the_most_silent_gives_way_too);
 	RUN_TEST(test_without_the_block_all_are_closed);
 	return UNITY_END();
 }
