@@ -33,12 +33,12 @@ within() {
 # reads SIGNAL VALUE: good, and this one
 reads() { [ "$(owsctl get "$1" 2>&1)" = "$2" ]; }
 
-# newer DEB VERSION DIR: the same package with a higher version, in DIR
+# newer DEB VERSION DIR: the same package with another version, in DIR
 newer() {
-	rm -rf /tmp/newer
-	dpkg-deb -R "$1" /tmp/newer
-	sed -i "s/^Version: .*/Version: $2/" /tmp/newer/DEBIAN/control
+	rm -rf "$3/newer"
 	mkdir -p "$3"
-	dpkg-deb -b --root-owner-group /tmp/newer "$3" >/dev/null
-	rm -rf /tmp/newer
+	dpkg-deb -R "$1" "$3/newer"
+	sed -i "s/$(dpkg-deb -f "$1" Version)/$2/g" "$3/newer/DEBIAN/control"
+	dpkg-deb -b --root-owner-group "$3/newer" "$3" >/dev/null
+	rm -rf "$3/newer"
 }

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# In a clean Debian without a running systemd: the packages beside this script are installed, used,
-# upgraded while they run, removed, installed again and purged. Changes the whole system.
+# In a clean Debian without a running systemd: the packages of the apt repository beside this script,
+# which is there before and after a release, are installed, each alone and all, used, upgraded while
+# they run, removed, installed again and purged. Changes the whole system.
 set -u
 cd "$(dirname "$0")"
 . ./lib.sh
@@ -24,19 +25,34 @@ member() { useradd -M -N -g nogroup ${2:+-G "$2"} "$1"; }
 as_user() { user=$1 && shift && setpriv --reuid "$user" --regid nogroup --init-groups "$@"; }
 refused() { ! "$@"; }
 
+debs=$(echo after/pool/*/*"$(cat version)"_*.deb)
+packages=$(for p in $debs; do dpkg-deb -f "$p" Package; done)
 # The libraries first, so that what is compared is ours
-libraries=$(for p in *.deb; do dpkg-deb -f "$p" Depends; done |
+libraries=$(for p in $debs; do dpkg-deb -f "$p" Depends; done |
 	tr ',' '\n' | sed -n 's/^ *\(lib[a-z0-9.+-]*\|cockpit-bridge\).*/\1/p' | grep -v '^libows\|^libc6$' | sort -u | tr '\n' ' ')
 does "what it needs is in the system's archive ($libraries)" \
 	sh -c "apt-get -q update && $apt install $libraries"
 everything >/tmp/before
 
-does 'the packages are installed' $apt install ./*.deb
-version=$(dpkg-query -W -f '${Version}' owsd)
-same 'their user is in the groups that it needs' 'gpio i2c owsd owsd-control' \
+# release WHEN: what apt finds from now on
+release() {
+	ln -s -f -n "$1" released && apt-get -q -o APT::Sandbox::User=root -o APT::Update::Error-Mode=any \
+		-o Dir::Etc::sourcelist=sources.list.d/owsd.sources -o Dir::Etc::sourceparts=- -o APT::Get::List-Cleanup=0 update
+}
+cp before/*.sources /etc/apt/sources.list.d/owsd.sources
+does 'apt takes the repository' release before
+for p in $packages; do
+	does "$p is installed alone" $apt install "$p"
+	does 'and purged' $apt purge --autoremove "$p"
+done
+everything | grep -v -x /etc/apt/sources.list.d/owsd.sources >/tmp/after
+same 'nothing stays of any' '' "$(diff /tmp/before /tmp/after)"
+
+# shellcheck disable=SC2086
+does 'the packages are installed' $apt install $packages
+same 'their user is in the groups that it needs' 'dialout gpio i2c owsd owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
 same 'who cannot log in' /usr/sbin/nologin "$(getent passwd owsd | cut -d: -f7)"
-same 'owsd says its version' "owsd ${version%+*}" "$(owsd --version | head -n 1)"
 does 'and that it has I2C' sh -c 'owsd --version | grep -q "^ *i2c "'
 same 'there is a configuration' '644 root root' "$(mode /etc/owsd/OWS.rio)"
 does 'that owsd takes' owsd --check
@@ -50,6 +66,26 @@ missing = [f"{page}: {link}" for page in pages
            for link in re.findall(r"\]\(([^)#:]+\.(?:md|svg|png))", page.read_text())
            if not (page.parent / link).exists()]
 sys.exit(" ".join(missing) if missing or len(pages) < 20 else 0)
+END
+
+# shellcheck disable=SC2086
+does 'each sbom names the packages of all libraries that are loaded' python3 - $packages <<'END'
+import json, pathlib, re, subprocess, sys
+def said(*command):
+    return subprocess.run(command, stdout=subprocess.PIPE, text=True).stdout
+missing, looked = [], 0
+for package in sys.argv[1:]:
+    bom = json.loads(pathlib.Path(f"/usr/share/doc/{package}/sbom.cdx.json").read_text())
+    names = {c["name"] for c in (bom["metadata"]["component"], *bom["components"])}
+    for file in map(pathlib.Path, said("dpkg", "-L", package).splitlines()):
+        if file.is_symlink() or not file.is_file() or file.read_bytes()[:4] != b"\x7fELF":
+            continue
+        for library in re.findall(r"(\S+) => /", said("ldd", str(file))):
+            looked += 1
+            owners = re.findall(r"^([^:]+):", said("dpkg", "-S", "*/" + library), re.M)
+            if not names & set(owners):
+                missing.append(f"{package}: {library} of {owners}")
+sys.exit(" ".join(missing) if missing or looked < 20 else 0)
 END
 
 # The devices: a simulated house behind the served protocol
@@ -105,17 +141,20 @@ does 'Python reads it' python3 -c 'import ows
 with ows.Ows() as signals:
     assert signals.get("pump").value == 1 and signals.get("pump").good'
 
-newer ./owsd_*.deb "$version+next" /tmp/next
 before=$(pid)
-does 'an upgrade while it runs' $apt install /tmp/next/owsd_*.deb
+does 'the next release is there' release after
+does 'an upgrade while it runs' $apt upgrade
+for p in $packages; do same "$p is the new one" "$(cat version)" "$(dpkg-query -W -f '${Version}' "$p")"; done
+version=$(cat version)
+same 'owsd says its version' "owsd ${version%+*}" "$(owsd --version | head -n 1)"
 does 'starts it anew' within 90 service owsd status
 does 'as another process' test "$(pid)" != "$before"
 does 'with InitValue, for who commanded has ended' within 90 reads pump 0
 does 'and the configuration as it was' cmp /etc/owsd/OWS.rio /tmp/OWS.rio
 
 echo 'OwsDrv { Period wrong }' >/etc/owsd/OWS.rio
-newer ./owsd_*.deb "$version+next2" /tmp/next2
-does 'an upgrade with a broken configuration ends' $apt install /tmp/next2/owsd_*.deb
+newer after/pool/*/owsd_"$version"_*.deb "$version+next" /tmp/next
+does 'an upgrade with a broken configuration ends' $apt install /tmp/next/owsd_*.deb
 does 'and owsd is not there' refused service owsd status
 service owsd start >/tmp/broken 2>&1
 does 'but says where it is broken' grep -q '/etc/owsd/OWS.rio:1:' /tmp/broken
@@ -127,20 +166,22 @@ does 'the package is removed' $apt remove owsd
 does 'nothing runs' refused pgrep -x owsd
 does 'the configuration stays' cmp /etc/owsd/OWS.rio /tmp/OWS.rio
 does 'the user too' getent passwd owsd
-does 'installed again' $apt install --allow-downgrades ./owsd_*.deb
+does 'installed again' $apt install owsd
 does 'it has values' within 90 owsctl get boiler
 rm /etc/owsd/OWS.rio
-does 'and again' $apt install --reinstall ./owsd_*.deb
+does 'and again' $apt install --reinstall owsd
 does 'a configuration that was deleted stays deleted' test ! -e /etc/owsd/OWS.rio
 
 cp /tmp/OWS.rio /etc/owsd/OWS.rio
 cp /tmp/OWS.rio /etc/owsd/HOUSE.rio
 service owsd restart
-does 'all are purged' $apt purge $(for p in *.deb; do echo "${p%%_*}"; done)
+# shellcheck disable=SC2086
+does 'all are purged' $apt purge $packages
 does 'nothing runs' refused pgrep -x owsd
 same 'no segment and no history stays' '' "$(find /run/owsd /var/lib/owsd* 2>/dev/null)"
 does 'what its owner has made does' test -e /etc/owsd/HOUSE.rio
 rm -r /etc/owsd
 kill $simulator
+rm /etc/apt/sources.list.d/owsd.sources
 everything >/tmp/after
 same 'nothing else stays' '' "$(diff /tmp/before /tmp/after)"
