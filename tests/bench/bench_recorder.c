@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What keeping readings costs a disk: the recorder's own writer, plain SQLite with the same rows of
- * values and a commit a second, and rrdtool with the archives of collectd, all with the same
- * readings of thermometers each second, 15 of 100 of which are another value, and once 1.6 of 100.
+ * values and a commit a second, w1retap, and rrdtool with the archives of collectd, all with the
+ * same readings of thermometers each second, 15 of 100 of which are another value, and once 1.6 of
+ * 100. w1retap is played: it reads a wire in rounds of two minutes, of which its driver of SQLite
+ * puts all readings into its table readings and commits. Then what a question costs: a day of one
+ * signal, and a month of it by hours, of a month of readings each two minutes.
  * A day in hurried time; of the slow ones a part of it, reckoned up, and of none the first half
  * minute. Bytes are those that an ext4 on a loop device writes to it; what nobody syncs is written
  * each half minute, as the kernel does, and its journal has the times of files in five seconds.
@@ -132,7 +135,8 @@ struct keeper {
 	void (*value)(unsigned i, int64_t second, double value);
 	void (*second)(int64_t second);
 	void (*end)(int64_t second);
-	bool each; /* it takes each reading, and not those alone that are other ones */
+	bool each;           /* it takes each reading, and not those alone that are other ones */
+	const char *program; /* that does it; NULL: we */
 };
 
 static struct history_writer *writer;
@@ -215,6 +219,44 @@ static void plain_end(int64_t second)
 	sqlite3_close(db);
 }
 
+#define ROUND 120 /* seconds: w1retap's without its option -t */
+
+/* Its mksens.sql, and the statements of its libw1sqlite */
+static void w1retap_begin(unsigned count, const char *folder)
+{
+	char path[sizeof(disk) + 64];
+
+	(void)count;
+	snprintf(path, sizeof(path), "%s/w1retap.sqlite", folder);
+	want(sqlite3_open(path, &db) == SQLITE_OK &&
+	             !sqlite3_exec(db,
+	                           "create table readings (date integer, name text, value real);"
+	                           "begin",
+	                           NULL, NULL, NULL) &&
+	             !sqlite3_prepare_v2(db, "insert into readings(date,name,value) values (?,?,?)",
+	                                 -1, &insert, NULL),
+	     path);
+}
+
+static void w1retap_value(unsigned i, int64_t second, double value)
+{
+	char name[16];
+
+	if (second % ROUND)
+		return;
+	snprintf(name, sizeof(name), "t%u", i);
+	sqlite3_bind_int64(insert, 1, DATE / S + second);
+	sqlite3_bind_text(insert, 2, name, -1, SQLITE_TRANSIENT);
+	sqlite3_bind_double(insert, 3, value);
+	want(sqlite3_step(insert) == SQLITE_DONE && !sqlite3_reset(insert), "an insert");
+}
+
+static void w1retap_second(int64_t second)
+{
+	if (second % ROUND == 0)
+		plain_second(second);
+}
+
 static FILE *rrd_to, *rrd_from;
 static unsigned rrd_asked;
 
@@ -286,9 +328,10 @@ static void rrd_end(int64_t second)
 }
 
 static const struct keeper keepers[] = {
-	{"owsd", owsd_begin, owsd_value, owsd_second, owsd_end, false},
-	{"sqlite", plain_begin, plain_value, plain_second, plain_end, false},
-	{"rrdtool", rrd_begin, rrd_value, rrd_second, rrd_end, true},
+	{"owsd", owsd_begin, owsd_value, owsd_second, owsd_end, false, NULL},
+	{"sqlite", plain_begin, plain_value, plain_second, plain_end, false, NULL},
+	{"w1retap", w1retap_begin, w1retap_value, w1retap_second, plain_end, true, NULL},
+	{"rrdtool", rrd_begin, rrd_value, rrd_second, rrd_end, true, "rrdtool"},
 };
 
 /* --- Measuring -------------------------------------------------------------------------------- */
@@ -330,9 +373,9 @@ struct plant {
 	int64_t seconds[sizeof(keepers) / sizeof(keepers[0])]; /* 0: not measured */
 };
 static const struct plant plants[] = {
-	{"50", 50, 0.15, {86400, 3600, 1800}},
-	{"50.calm", 50, 0.016, {86400, 0, 0}},
-	{"10000", 10000, 0.15, {630, 90, 60}},
+	{"50", 50, 0.15, {86400, 3600, 86400, 1800}},
+	{"50.calm", 50, 0.016, {86400, 0, 0, 0}},
+	{"10000", 10000, 0.15, {630, 90, 0, 60}},
 };
 
 /* In a process of its own, whose processor time and memory count. */
@@ -373,12 +416,136 @@ static void measure(const struct plant *plant, const struct keeper *keeper, int6
 	else
 		report(plant->name, keeper, "written_a_day", bytes * day / 1e6, "MB");
 	report(plant->name, keeper, "growth_a_day", (bytes_in(folder) - kept) * day / 1e6, "MB");
-	if (keeper->each)
+	if (keeper->program)
 		report(plant->name, keeper, "file", kept / 1e6, "MB");
 	report(plant->name, keeper, "cpu", (cpu_s() - cpu) * 1e6 * day / 86400, "us/s");
 	report(plant->name, keeper, "memory",
-	       keeper->each ? most_kb(RUSAGE_CHILDREN) : most_kb(RUSAGE_SELF) - used, "kB");
+	       keeper->program ? most_kb(RUSAGE_CHILDREN) : most_kb(RUSAGE_SELF) - used, "kB");
 	readings_end(&readings);
+}
+
+static bool is_here(const struct keeper *keeper)
+{
+	bool is = !keeper->program || !system("command -v rrdtool >/dev/null");
+
+	if (!is)
+		bench_note("recorder: rrdtool is not installed");
+	return is;
+}
+
+/* --- Questions -------------------------------------------------------------------------------- */
+
+#define DAYS 30
+#define TIMES 15
+#define OF_DAY "20028 * 86400" /* the last but one; DATE is the begin of day 20000 */
+
+static const char *const questions[][3] = {
+	/* keeper; a day of one signal; a month of it by hours */
+	{"owsd",
+         "select time, value from trend where name = 't7' and day = date(" OF_DAY
+         ", 'unixepoch') order by id",
+         "select time, mean from trend_hour where name = 't7' and day >= date(20000 * 86400,"
+         " 'unixepoch')"},
+	{"w1retap",
+         "select date, value from readings where name = 't7' and date between " OF_DAY
+         " and " OF_DAY " + 86399 order by date",
+         "select date / 3600, avg(value) from readings where name = 't7' group by 1 order by 1"},
+};
+
+/* The processor's milliseconds of a question, with the opening of the file. */
+static double ask_file(const char *path, const char *question)
+{
+	double begun = cpu_s();
+
+	for (int i = 0; i < TIMES; i++) {
+		sqlite3_stmt *answer = NULL;
+		sqlite3 *file = NULL;
+		int rows = 0;
+
+		want(sqlite3_open_v2(path, &file, SQLITE_OPEN_READONLY, NULL) == SQLITE_OK &&
+		             sqlite3_prepare_v2(file, question, -1, &answer, NULL) == SQLITE_OK,
+		     question);
+		while (sqlite3_step(answer) == SQLITE_ROW)
+			rows++;
+		want(rows > 24, question);
+		sqlite3_finalize(answer);
+		sqlite3_close(file);
+	}
+	return (cpu_s() - begun) * 1e3 / TIMES;
+}
+
+/* Its archives have their rows from the start, whether they are known or not. */
+static double ask_rrd(const char *folder, int resolution, int seconds)
+{
+	double begun;
+
+	begun = cpu_s();
+	rrd_begin(8, folder);
+	rrd_end(0);
+	begun = 2 * begun - cpu_s(); /* less that */
+	rrd_begin(8, folder);
+	for (int i = 0; i < TIMES; i++) {
+		char line[256] = "";
+
+		fprintf(rrd_to, "fetch t7.rrd AVERAGE -r %d -s %d -e %d\n", resolution,
+		        RRD_DATE - seconds, RRD_DATE - resolution);
+		fflush(rrd_to);
+		while (strncmp(line, "OK", 2))
+			want(fgets(line, sizeof(line), rrd_from) && strncmp(line, "ERROR", 5) != 0,
+			     "rrdtool fetch");
+	}
+	rrd_end(0);
+	return (cpu_s() - begun) * 1e3 / TIMES;
+}
+
+static void ask_of(const struct keeper *keeper, const char *const *question)
+{
+	struct readings readings = readings_begin(50, 0.15);
+	struct plant plant = {.name = "month"};
+	char folder[sizeof(disk) + 32], path[sizeof(folder) + 32];
+
+	/* in memory: what is measured is no disk */
+	snprintf(folder, sizeof(folder), "%s/%s.month", bench_dir()->path, keeper->name);
+	snprintf(path, sizeof(path), "%s/%s.sqlite", folder,
+	         keeper == keepers ? "history" : keeper->name);
+	want(mkdir(folder, 0700) == 0, folder);
+	if (question) {
+		keeper->begin(50, folder);
+		for (int64_t now = ROUND; now < DAYS * 86400; now += ROUND) {
+			for (unsigned i = 0; i < 50; i++)
+				if (readings_next(&readings, i) || keeper->each || now == ROUND)
+					keeper->value(i, now, readings.values[i]);
+			keeper->second(now);
+		}
+		keeper->end(DAYS * 86400);
+	}
+	report(plant.name, keeper, "day_of_one",
+	       question ? ask_file(path, question[1]) : ask_rrd(folder, 72, 86400), "ms");
+	report(plant.name, keeper, "month_by_hours",
+	       question ? ask_file(path, question[2]) : ask_rrd(folder, 2232, DAYS * 86400), "ms");
+	readings_end(&readings);
+}
+
+static void in_a_process(const struct keeper *keeper, const struct plant *plant, int64_t seconds)
+{
+	const char *const *question = NULL;
+	int status = 0;
+	pid_t child;
+
+	fflush(stdout);
+	child = fork();
+	if (child == 0) {
+		for (size_t i = 0; i < sizeof(questions) / sizeof(questions[0]); i++)
+			if (!strcmp(questions[i][0], keeper->name))
+				question = questions[i];
+		if (plant)
+			measure(plant, keeper, seconds);
+		else
+			ask_of(keeper, question);
+		fflush(stdout);
+		_exit(0);
+	}
+	want(child > 0 && waitpid(child, &status, 0) == child && status == 0, keeper->name);
 }
 
 int main(int argc, char **argv)
@@ -398,26 +565,15 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < sizeof(plants) / sizeof(plants[0]); i++) {
 		for (size_t k = 0; k < sizeof(keepers) / sizeof(keepers[0]); k++) {
 			int64_t seconds = plants[i].seconds[k];
-			int status = 0;
-			pid_t child;
 
-			if (!plants[i].seconds[k])
-				continue;
-			if (keepers[k].each && system("command -v rrdtool >/dev/null")) {
-				bench_note("recorder: rrdtool is not installed");
-				continue;
-			}
-			fflush(stdout);
-			child = fork();
-			if (child == 0) {
-				measure(&plants[i], &keepers[k], seconds < most ? seconds : most);
-				fflush(stdout);
-				_exit(0);
-			}
-			want(child > 0 && waitpid(child, &status, 0) == child && status == 0,
-			     keepers[k].name);
+			if (seconds && is_here(&keepers[k]))
+				in_a_process(&keepers[k], &plants[i],
+				             seconds < most ? seconds : most);
 		}
 	}
+	for (size_t k = 0; k < sizeof(keepers) / sizeof(keepers[0]); k++)
+		if (strcmp(keepers[k].name, "sqlite") != 0 && is_here(&keepers[k]))
+			in_a_process(&keepers[k], NULL, 0);
 	umount2(argc > 2 ? "" : disk, MNT_DETACH);
 	return 0;
 }

@@ -53,9 +53,12 @@ def some_output():
         lines += [f"page.{name}.p{p} {p + (30 if name == 'screen' else 0)} ms" for p in (50, 95, 99)]
     for name in ("signals", "owhttpd.uncached", "owhttpd.cached"):
         lines += [f"page.{name}.bytes 2494 bytes", f"page.{name}.p50 4.50 ms", f"page.{name}.rate 200 1/s"]
-    for at in (f"recorder.{n}.{who}" for n in (50, 10000) for who in ("owsd", "sqlite", "rrdtool")):
+    for at in (f"recorder.{n}.{who}" for n in (50, 10000)
+               for who in ("owsd", "sqlite", "w1retap", "rrdtool")):
         lines += [f"{at}.written_a_day 121 MB", f"{at}.growth_a_day 22.02 MB", f"{at}.cpu 22.25 us/s",
                   f"{at}.memory 4336 kB"]
+    for who in ("owsd", "w1retap", "rrdtool"):
+        lines += [f"recorder.month.{who}.day_of_one 1.3 ms", f"recorder.month.{who}.month_by_hours 11.4 ms"]
     for n in ("futex", 1, 8, 100):
         lines += [f"bells.{n} 8.00 us", f"bells.{n}.one_cpu 6.00 us"]
     for n in (10, 1000, 10000):
