@@ -28,7 +28,7 @@ int getaddrinfo(const char *name, const char *service, const struct addrinfo *hi
 	*found = NULL;
 	waiting++;
 	while (silent)
-		usleep(1000); /* until the test lets it answer */
+		usleep(1000); /* pace */
 	waiting--;
 	return EAI_NONAME;
 }
@@ -82,14 +82,14 @@ static void test_reloads_beside_a_silent_name_server_make_no_threads_without_end
 		TEST_ASSERT_EQUAL_UINT(OTHERS_MAX, others_count(others));
 		/* each that was begun is in the resolver soon */
 		for (int i = 0; waiting < (round ? 2 : 1) * OTHERS_MAX && i < PATIENCE; i++)
-			usleep(10000); /* a look in a while */
+			usleep(10000); /* pace */
 	}
 	TEST_ASSERT_EQUAL_UINT(2 * OTHERS_MAX, waiting);
 	TEST_ASSERT_TRUE(says(others, "for want of a thread"));
 	others_end(others);
 	silent = false;
 	for (int i = 0; waiting && i < PATIENCE; i++)
-		usleep(10000); /* a look in a while */
+		usleep(10000); /* pace */
 	/* the next list is asked again, once those of before have ended */
 	for (int i = 0; i < PATIENCE; i++) {
 		others = others_begin(list_of(ROUNDS));
@@ -97,11 +97,11 @@ static void test_reloads_beside_a_silent_name_server_make_no_threads_without_end
 			break;
 		others_end(others);
 		others = NULL;
-		usleep(10000); /* a look in a while */
+		usleep(10000); /* pace */
 	}
 	TEST_ASSERT_NOT_NULL(others);
 	for (int i = 0; !says(others, "no address of that name") && i < PATIENCE; i++)
-		usleep(10000); /* a look in a while */
+		usleep(10000); /* pace */
 	TEST_ASSERT_TRUE(says(others, "no address of that name"));
 	others_end(others);
 }
