@@ -97,7 +97,7 @@ static int find_own(struct usb_master *master, uint8_t rom[8])
 /*
  * Open it, and look whether it is the one: -ENXIO. Where the target names none, the one that is
  * opened first becomes it. On a wire that fails nothing can be asked: then it is the one if there
- * is no other.
+ * is no other. One without a chip of its own is asked again.
  */
 static int try_place(struct usb_master *master, const struct usb_place *place, bool only, char *why,
                      size_t size)
@@ -117,12 +117,17 @@ static int try_place(struct usb_master *master, const struct usb_place *place, b
 			place->name, strerror(-err));
 	int own = err ? 0 : find_own(master, rom);
 
-	if (own == -ENODEV || own == -ECANCELED)
+	if (own == -ENODEV || own == -ECANCELED) {
 		err = own;
-	else if (!err && by_rom && (own < 0 ? !only : memcmp(rom, master->rom, 8) != 0))
-		err = -ENXIO;
-	else if (!err && !by_rom && own == 1 && !*master->where)
+	} else if (!err && by_rom && own > 0) {
+		err = memcmp(rom, master->rom, 8) == 0 ? 0 : -ENXIO;
+	} else if (!err && by_rom && (own == 0 || !only)) {
+		snprintf(why, size, "the adapter at USB %s does not show its own chip",
+		         place->name);
+		err = -EIO;
+	} else if (!err && own == 1 && !*master->where) {
 		memcpy(master->rom, rom, sizeof(rom));
+	}
 	if (err)
 		master->master.ops->close(&master->master);
 	return err;

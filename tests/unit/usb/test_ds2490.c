@@ -179,7 +179,9 @@ static void test_a_path_says_of_another_branch_only_what_is_known(void)
 	const uint8_t *roms[2] = {near};
 	bool away[2] = {false};
 
-	sticks_start(house);
+	sticks_start("chip DS2482-100 0x18\n"
+	             "DS18B20 28.0000000000E3 as t\n"
+	             "DS18B20 28.0000000000A2 as u\n");
 	/* it goes the way of t, where u is on the other branch, and leaves it at the next bit */
 	roms[1] = sim_net_slave(&sticks.stick[0].net, "u")->rom;
 	TEST_ASSERT_EQUAL_INT(0, search_among(sticks.wire, roms, away, 2, 64));

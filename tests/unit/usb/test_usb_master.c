@@ -8,7 +8,8 @@
 #include "tests/unit/aid/parts.h"
 #include "tests/unit/aid/usb_scene.h"
 
-#define WIRE(id) "chip DS2482-100 0x18\nDS1420 81." id "\nDS18B20 28." id " as t temperature 21.5\n"
+#define WIRE(id) \
+	"chip DS2482-100 0x18\nDS1420 81." id " as own\nDS18B20 28." id " as t temperature 21.5\n"
 static const char first[] = WIRE("000000000001"), second[] = WIRE("000000000002");
 static const char third[] = WIRE("000000000003");
 
@@ -193,7 +194,18 @@ static void test_on_a_short_wire_the_only_one_is_taken_and_of_two_none(void)
 	TEST_ASSERT_EQUAL_INT(-ECOMM, part_reset(sticks.wire));
 	sticks.master->ops->close(sticks.master);
 	stick_add(second);
-	refused(-ENODEV, "no DS9490R with the chip 81.000000000001");
+	refused(-EIO, "the adapter at USB 1-1 does not show its own chip");
+}
+
+/* It may have its supply for a moment only. */
+static void test_one_that_does_not_show_its_own_chip_is_asked_again(void)
+{
+	stick_add(first);
+	sticks_make("81.000000000001");
+	stick_event(&sticks.stick[0], "unplug own");
+	refused(-EIO, "the adapter at USB 1-1 does not show its own chip");
+	stick_event(&sticks.stick[0], "plug own");
+	TEST_ASSERT_EQUAL_STRING("1-1", opened());
 }
 
 int main(void)
@@ -206,6 +218,7 @@ int main(void)
 	RUN_TEST(test_the_kernels_driver_gets_it_back_at_the_end_and_not_before);
 	RUN_TEST(test_one_that_cannot_be_opened_is_the_reason_and_is_tried_again);
 	RUN_TEST(test_two_targets_find_theirs);
+	RUN_TEST(test_one_that_does_not_show_its_own_chip_is_asked_again);
 	RUN_TEST(test_on_a_short_wire_the_only_one_is_taken_and_of_two_none);
 	return UNITY_END();
 }
