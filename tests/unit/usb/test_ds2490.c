@@ -376,6 +376,19 @@ static void test_a_silent_adapter_is_an_error_in_time_and_serves_when_it_is_back
 	}
 }
 
+static void test_an_endpoint_that_stalls_is_cleared(void)
+{
+	uint8_t in[9];
+
+	sticks_start(house);
+	for (unsigned endpoint = 1; endpoint < 4; endpoint++) {
+		chip->stalled = (uint8_t)(1 << endpoint);
+		TEST_ASSERT_EQUAL_INT(-EIO, sticks_scratchpad("t", in));
+		sticks_check("t");
+	}
+	TEST_ASSERT_EQUAL_UINT(0, sticks.stick[0].resets);
+}
+
 static void test_an_adapter_that_does_not_answer_is_reset_by_its_hub_when_it_is_opened(void)
 {
 	stick_add(house);
@@ -496,6 +509,7 @@ int main(void)
 	RUN_TEST(test_a_halted_chip_goes_on_and_one_that_lost_a_command_is_reset);
 	RUN_TEST(test_an_adapter_that_has_lost_its_settings_is_noticed);
 	RUN_TEST(test_a_silent_adapter_is_an_error_in_time_and_serves_when_it_is_back);
+	RUN_TEST(test_an_endpoint_that_stalls_is_cleared);
 	RUN_TEST(test_an_adapter_that_does_not_answer_is_reset_by_its_hub_when_it_is_opened);
 	RUN_TEST(test_a_transfer_that_fails_anywhere_spoils_one_transaction_and_no_value);
 	RUN_TEST(test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plugged_in);
