@@ -209,7 +209,7 @@ def compiled(stage, text, compiler, suffix, flags):
     library = [f"-L{owsdtest.BUILD}", "-lows"] if whole else ["-c"]
     if face:
         library = [owsdtest.BUILD / "core.a",
-                   *re.findall(r"-l\w+", (owsdtest.BUILD / "with/ld").read_text())]
+                   *re.findall(r"-l[\w.-]+", (owsdtest.BUILD / "with/ld").read_text())]
     done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/public",
                       f"-I{SOURCE}", "-isystem", HERE / "docs", source,
                       *library, "-o", output])
