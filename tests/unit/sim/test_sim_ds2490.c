@@ -217,6 +217,67 @@ static void test_faults_that_can_be_switched_on(void)
 	TEST_ASSERT_EQUAL_UINT8(0, usb.chip.alternate);
 }
 
+static void test_a_halt_waits_for_the_wire_or_for_the_command(void)
+{
+	static const uint8_t four[4] = {1, 2, 3, 4};
+
+	usb_out(four, 4);
+	usb_comm(DS2490_BLOCK | DS2490_IM, 4);
+	usb.now += 700 * USB_US; /* in the second byte */
+	usb_control(DS2490_HALT_EXE_IDLE);
+	TEST_ASSERT_FALSE(usb_has(DS2490_HALTED));
+	usb_finish();
+	TEST_ASSERT_TRUE(usb_has(DS2490_HALTED));
+	TEST_ASSERT_EQUAL_UINT8(2, usb.state[DS2490_AT_IN]);
+	usb_control(DS2490_RESUME_EXE);
+	usb.now += 700 * USB_US;
+	usb_control(DS2490_HALT_EXE_DONE);
+	usb_finish();
+	TEST_ASSERT_TRUE(usb_has(DS2490_HALTED));
+	TEST_ASSERT_EQUAL_UINT8(4, usb.state[DS2490_AT_IN]);
+}
+
+static void test_what_comes_after_a_macro_waits_for_a_start_of_its_own(void)
+{
+	usb_comm(DS2490_BYTE | DS2490_IM, 0x12);
+	usb_finish();
+	usb_comm(DS2490_BYTE, 0x34);
+	TEST_ASSERT_EQUAL_INT64(0, usb_finish());
+	usb.now += 10 * USB_MS;
+	TEST_ASSERT_EQUAL_INT(1, usb_in(64));
+	TEST_ASSERT_EQUAL_INT(-EAGAIN, usb_in(64));
+}
+
+static void test_sixteen_results_wait_and_no_more(void)
+{
+	for (unsigned i = 0; i < 17; i++) {
+		usb_comm(DS2490_BIT | DS2490_IM | DS2490_NTF, 0);
+		usb_finish();
+	}
+	TEST_ASSERT_EQUAL_UINT64(1, usb.chip.faults.results_lost);
+	usb.allowed++;
+	TEST_ASSERT_EQUAL_INT(32, sim_ds2490_interrupt(&usb.chip, usb.state, 32, usb.now));
+	usb_comm(DS2490_BIT | DS2490_IM | DS2490_NTF, 0);
+	usb_finish();
+	TEST_ASSERT_EQUAL_INT(-EOVERFLOW, sim_ds2490_interrupt(&usb.chip, usb.state, 16, usb.now));
+	usb.allowed++;
+	TEST_ASSERT_EQUAL_INT(16, sim_ds2490_interrupt(&usb.chip, usb.state, 16, usb.now));
+}
+
+static void test_a_reset_of_the_device_frees_the_fifo_of_ep0(void)
+{
+	for (unsigned i = 0; i < 5; i++)
+		usb_comm(DS2490_BLOCK, 1);
+	usb_control(DS2490_RESET_DEVICE);
+	usb_comm(DS2490_BYTE | DS2490_IM, 0x5A);
+	usb_finish();
+	TEST_ASSERT_EQUAL_INT(1, usb_in(64));
+	TEST_ASSERT_EQUAL_HEX8(0x5A, usb.data[0]);
+	TEST_ASSERT_EQUAL_INT(0, usb_request(0xC0, DS2490_CONTROL, DS2490_GET_COMM, 0, 4));
+	TEST_ASSERT_EQUAL_UINT64(1, usb.chip.faults.unhalted);
+	usb.allowed++;
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -231,5 +292,9 @@ int main(void)
 	RUN_TEST(test_a_host_with_too_little_room_loses_all);
 	RUN_TEST(test_what_the_chip_does_not_know_it_stalls);
 	RUN_TEST(test_faults_that_can_be_switched_on);
+	RUN_TEST(test_a_halt_waits_for_the_wire_or_for_the_command);
+	RUN_TEST(test_what_comes_after_a_macro_waits_for_a_start_of_its_own);
+	RUN_TEST(test_sixteen_results_wait_and_no_more);
+	RUN_TEST(test_a_reset_of_the_device_frees_the_fifo_of_ep0);
 	return UNITY_END();
 }

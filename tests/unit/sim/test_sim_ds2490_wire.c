@@ -276,6 +276,63 @@ static void test_speeds_and_their_slots(void)
 	TEST_ASSERT_EQUAL_INT(4, usb_in(64));
 }
 
+static void test_resets_until_a_presence_pulse(void)
+{
+	usb_event("unplug own");
+	usb_event("unplug t");
+	usb_event("unplug u");
+	usb_event("unplug id");
+	usb_comm(DS2490_WIRE_RESET | DS2490_IM | DS2490_NTF | DS2490_PST, 0);
+	usb.now += 100 * USB_MS;
+	TEST_ASSERT_FALSE(usb_has(DS2490_IDLE));
+	usb_event("plug t");
+	usb.now += 5 * USB_MS;
+	TEST_ASSERT_EQUAL_INT(2, usb_look()); /* and that a device has come */
+	TEST_ASSERT_EQUAL_HEX8(0, usb.state[DS2490_STATE]);
+	TEST_ASSERT_EQUAL_HEX8(DS2490_IDLE, usb.state[DS2490_AT_FLAGS]);
+}
+
+static void test_overdrive_match_changes_the_speed_after_its_command(void)
+{
+	usb_mode(DS2490_SPEED_CHANGE_EN, 1);
+	usb_out(sim_net_slave(&usb.net, "id")->rom, 8);
+	usb_comm(DS2490_MATCH | DS2490_IM | DS2490_SE | DS2490_RST, 0x0269);
+	TEST_ASSERT_EQUAL_INT64(1096 * USB_US + 8 * 68 * USB_US + 64 * 10 * USB_US, usb_finish());
+	usb_look();
+	TEST_ASSERT_EQUAL_UINT8(2, usb.state[DS2490_AT_SPEED]);
+}
+
+static void test_a_search_for_one_device_leaves_all_others(void)
+{
+	usb_out(sim_net_slave(&usb.net, "u")->rom, 8); /* not the first that a search finds */
+	TEST_ASSERT_EQUAL_HEX8(0, usb_result_of(DS2490_SEARCH | DS2490_RST, 0xF0));
+	usb_out("\xBE", 1);
+	usb_comm(1 << 8 | DS2490_STRAIGHT | DS2490_IM, 9);
+	usb_finish();
+	TEST_ASSERT_EQUAL_INT(9, usb_in(64));
+	TEST_ASSERT_EQUAL_HEX8(sim_crc8(0, usb.data, 8), usb.data[8]);
+}
+
+static void test_a_pulse_of_some_time_ends_by_a_halt_at_once_or_in_its_time(void)
+{
+	usb_mode(DS2490_PULSE_EN, 2);
+	usb_comm(DS2490_BYTE | DS2490_IM, 0xFF);
+	TEST_ASSERT_EQUAL_INT64(8 * 68 * USB_US, usb_finish()); /* enabled, and not asked for */
+	usb_comm(DS2490_PULSE | DS2490_IM, 0);
+	usb.now += 100 * USB_MS;
+	usb_control(DS2490_HALT_EXE_DONE);
+	TEST_ASSERT_TRUE(usb_has(DS2490_SPUA));
+	TEST_ASSERT_FALSE(usb_has(DS2490_HALTED));
+	TEST_ASSERT_EQUAL_INT64(412 * USB_MS, usb_finish());
+	TEST_ASSERT_TRUE(usb_has(DS2490_HALTED));
+	usb_control(DS2490_RESUME_EXE);
+	usb_comm(DS2490_PULSE | DS2490_IM, 0);
+	usb.now += 100 * USB_MS;
+	TEST_ASSERT_TRUE(usb_has(DS2490_SPUA));
+	usb_control(DS2490_HALT_EXE_IDLE);
+	TEST_ASSERT_FALSE(usb_has(DS2490_SPUA));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -292,5 +349,9 @@ int main(void)
 	RUN_TEST(test_no_pullup_that_is_not_enabled_and_after_a_one_with_cib);
 	RUN_TEST(test_a_pulse_without_end_is_ended_by_a_halt);
 	RUN_TEST(test_speeds_and_their_slots);
+	RUN_TEST(test_resets_until_a_presence_pulse);
+	RUN_TEST(test_overdrive_match_changes_the_speed_after_its_command);
+	RUN_TEST(test_a_search_for_one_device_leaves_all_others);
+	RUN_TEST(test_a_pulse_of_some_time_ends_by_a_halt_at_once_or_in_its_time);
 	return UNITY_END();
 }
