@@ -14,6 +14,8 @@
 #include "src/faces/show/newest.h"
 
 #define HEART_NS (100 * NS_PER_MS)
+/* Clients read the image themselves: of changes only the time of the newest is of use */
+#define PACE_NS (500 * NS_PER_MS)
 
 /* --- Rows ------------------------------------------------------------------------------------ */
 
@@ -287,6 +289,7 @@ int modbus_open(struct face *face)
 	m->source.ctx = m->clients.ctx = m;
 	m->clients.face = m->writing.face = face;
 	m->clients.answer = answer;
+	face->pace_ns = PACE_NS;
 	if (lock_map(m)) {
 		face_complain(face->ops->program, "another owsd-modbus serves %s: end it first",
 		              face->arguments->instance);
