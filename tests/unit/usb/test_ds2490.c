@@ -39,26 +39,6 @@ static void anew(void)
 	setUp();
 }
 
-static void test_a_state_is_read_from_its_packet_and_a_device_that_arrives_is_no_result(void)
-{
-	uint8_t bytes[20] = {
-		[1] = 1, [8] = 0xB9, [11] = 2, [12] = 64, [13] = 19, [16] = 0xA5, [17] = 0x02};
-	struct ds2490_state state;
-
-	TEST_ASSERT_EQUAL_INT(-EIO, ds2490_parse(bytes, 15, &state));
-	TEST_ASSERT_EQUAL_INT(0, ds2490_parse(bytes, 16, &state));
-	TEST_ASSERT_FALSE(state.told);
-	TEST_ASSERT_EQUAL_HEX8(PULLED_UP | HALTED | IDLE | OVERRUN | 0x08, state.flags);
-	TEST_ASSERT_EQUAL_UINT(2, state.commands);
-	TEST_ASSERT_EQUAL_UINT(64, state.out);
-	TEST_ASSERT_EQUAL_UINT(19, state.in);
-	TEST_ASSERT_EQUAL_INT(0, ds2490_parse(bytes, 17, &state));
-	TEST_ASSERT_FALSE(state.told);
-	TEST_ASSERT_EQUAL_INT(0, ds2490_parse(bytes, 19, &state));
-	TEST_ASSERT_TRUE(state.told);
-	TEST_ASSERT_EQUAL_HEX8(SHORT, state.results);
-}
-
 static void test_a_reading_takes_its_time_on_the_wire_and_few_transfers(void)
 {
 	int64_t begun, wire;
@@ -490,7 +470,6 @@ static void test_what_a_transaction_costs_is_counted(void)
 int main(void)
 {
 	UNITY_BEGIN();
-	RUN_TEST(test_a_state_is_read_from_its_packet_and_a_device_that_arrives_is_no_result);
 	RUN_TEST(test_a_reading_takes_its_time_on_the_wire_and_few_transfers);
 	RUN_TEST(test_the_chip_is_set_up_and_its_slew_rate_is_that_of_power_on);
 	RUN_TEST(test_a_long_transaction_goes_in_pieces);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The adapters that are plugged in, by files like those of the kernel. */
+/* The adapters that are plugged in, by files like those of the kernel; and what one says. */
 #include <errno.h>
 #include <ftw.h>
 #include <stdio.h>
@@ -10,6 +10,7 @@
 
 #include "unity.h"
 
+#include "hal/usb/ds2490.h"
 #include "hal/usb/find.h"
 #include "hal/usb/libusb.h"
 
@@ -98,9 +99,30 @@ static void test_one_that_has_gone_or_gives_no_rights_is_explained(void)
 	usb_linux.give_back(&none);
 }
 
+static void test_a_state_is_read_from_its_packet_and_a_device_that_arrives_is_no_result(void)
+{
+	uint8_t bytes[20] = {
+		[1] = 1, [8] = 0xB9, [11] = 2, [12] = 64, [13] = 19, [16] = 0xA5, [17] = 0x02};
+	struct ds2490_state state;
+
+	TEST_ASSERT_EQUAL_INT(-EIO, ds2490_parse(bytes, 15, &state));
+	TEST_ASSERT_EQUAL_INT(0, ds2490_parse(bytes, 16, &state));
+	TEST_ASSERT_FALSE(state.told);
+	TEST_ASSERT_EQUAL_HEX8(PULLED_UP | HALTED | IDLE | OVERRUN | 0x08, state.flags);
+	TEST_ASSERT_EQUAL_UINT(2, state.commands);
+	TEST_ASSERT_EQUAL_UINT(64, state.out);
+	TEST_ASSERT_EQUAL_UINT(19, state.in);
+	TEST_ASSERT_EQUAL_INT(0, ds2490_parse(bytes, 17, &state));
+	TEST_ASSERT_FALSE(state.told);
+	TEST_ASSERT_EQUAL_INT(0, ds2490_parse(bytes, 19, &state));
+	TEST_ASSERT_TRUE(state.told);
+	TEST_ASSERT_EQUAL_HEX8(SHORT, state.results);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_a_state_is_read_from_its_packet_and_a_device_that_arrives_is_no_result);
 	RUN_TEST(test_adapters_are_listed_with_their_files_and_drivers);
 	RUN_TEST(test_there_may_be_none_no_usb_or_more_than_anybody_has);
 	RUN_TEST(test_one_that_has_gone_or_gives_no_rights_is_explained);
