@@ -266,7 +266,7 @@ static void stop_theirs(void)
 static void line(const struct kind *kind, const char *what, const char *who, double value,
                  const char *unit)
 {
-	char name[96];
+	char name[128];
 
 	snprintf(name, sizeof(name), "%s.%s%s", kind->scheme, what, who);
 	bench_line(name, value, unit);
@@ -275,7 +275,7 @@ static void line(const struct kind *kind, const char *what, const char *who, dou
 static void scans(const struct kind *kind, unsigned thermometers, bool genuine)
 {
 	double seconds[SCANS], trips[SCANS];
-	char what[32];
+	char what[96];
 
 	for (int i = 0; i < SCANS; i++) {
 		double before = turns();
@@ -288,9 +288,16 @@ static void scans(const struct kind *kind, unsigned thermometers, bool genuine)
 			read_ours(thermometers, "temperature12");
 		seconds[i] = (double)(bench_now() - begun) / 1e9;
 		trips[i] = turns() - before;
-		if (!ok || ours.failures) {
-			fprintf(stderr, "serial: a reading by %s has failed: %s\n",
-			        genuine ? "owserver" : "owsd", strerror(-ours.err));
+		if (!ok) {
+			snprintf(what, sizeof(what),
+			         "%.20s.scan.%u.owserver left out: owserver failed to read",
+			         kind->scheme, thermometers);
+			bench_note(what);
+			return;
+		}
+		if (ours.failures) {
+			fprintf(stderr, "serial: a reading by owsd has failed: %s\n",
+			        strerror(-ours.err));
 			exit(1);
 		}
 	}
