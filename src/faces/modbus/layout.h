@@ -32,9 +32,10 @@ enum layout_field {
 #define LAYOUT_ALARM_UNACKNOWLEDGED 0x02
 #define LAYOUT_ALARM_DEVICE 0x04
 #define LAYOUT_ALARM_SHELVED 0x08
-/* Bits of LAYOUT_FLAGS. */
+/* Bits of LAYOUT_FLAGS; from LAYOUT_FLAG_HEALTH on what the signal says of its device. */
 #define LAYOUT_FLAG_OUTPUT 0x01
 #define LAYOUT_FLAG_SIMULATED 0x02
+#define LAYOUT_FLAG_HEALTH 8 /* enum device_health */
 
 /* What is served of a signal at one moment. */
 struct layout_row {

@@ -11,6 +11,7 @@
 
 #include "src/faces/kit/look.h"
 #include "src/faces/kit/loop.h"
+#include "src/faces/show/health.h"
 #include "src/faces/show/newest.h"
 
 #define HEART_NS (100 * NS_PER_MS)
@@ -36,6 +37,16 @@ static uint16_t alarm_of(struct ows *ows, int id)
 	                  (state.shelved ? LAYOUT_ALARM_SHELVED : 0) | state.limit_kind << 8);
 }
 
+/* info: NULL where owsd has no such signal, or is not there. */
+static void set_quality(struct layout_row *row, const struct ows_info *info, uint8_t quality)
+{
+	bool simulated = row->flags & LAYOUT_FLAG_SIMULATED;
+
+	row->quality = quality;
+	row->flags |= (info ? health_of_signal(info, quality, simulated) : quality_health(quality))
+	              << LAYOUT_FLAG_HEALTH;
+}
+
 /* Of a signal that owsd has, and of one that it has no more or that nobody knows of now. */
 static enum exception row_of(void *ctx, unsigned place, struct layout_row *row, bool *has)
 {
@@ -44,27 +55,31 @@ static enum exception row_of(void *ctx, unsigned place, struct layout_row *row, 
 	const struct served *served = &m->served[place];
 	int signal = m->map.places[place].signal;
 	struct face_value value;
+	struct ows_info info;
 
 	if (!m->map.places[place].identity)
 		return EXCEPTION_ADDRESS;
 	*has = signal != MAP_NO_SIGNAL;
-	*row = (struct layout_row){.quality = OWS_Q_NO_PROPERTY, .age_ns = -1};
-	if (!*has)
+	*row = (struct layout_row){.age_ns = -1};
+	if (!*has) {
+		set_quality(row, NULL, OWS_Q_NO_PROPERTY);
 		return EXCEPTION_NONE;
+	}
 	row->decimals = served->decimals;
 	row->flags = served->flags;
-	row->quality = OWS_Q_NO_OWSD;
-	if (!face->live)
+	if (!face->live) {
+		set_quality(row, NULL, OWS_Q_NO_OWSD);
 		return EXCEPTION_NONE;
+	}
 	if (!look_is_current(face))
 		return EXCEPTION_BUSY;
 	face_value(face->ows, signal, true, m->now_ns, &value);
 	row->good = value.good && isfinite(value.v.number);
 	row->number = value.v.number;
-	row->quality = value.v.quality;
 	row->age_ns = value.v.measured_ns ? value.v.age_ns : -1;
 	row->count = (uint16_t)value.v.count;
 	row->flags |= value.simulated ? LAYOUT_FLAG_SIMULATED : 0;
+	set_quality(row, ows_info(face->ows, signal, &info) ? NULL : &info, value.v.quality);
 	row->alarm = alarm_of(face->ows, served->id);
 	return EXCEPTION_NONE;
 }
