@@ -95,15 +95,45 @@ static int find_own(struct usb_master *master, uint8_t rom[8])
 }
 
 /*
- * Open it, and look whether it is the one: -ENXIO. Where the target names none, the one that is
+ * Is it the one? 0, -ENXIO: another, or an error. Where the target names none, the one that is
  * opened first becomes it. On a wire that fails nothing can be asked: then it is the one if there
  * is no other. One without a chip of its own is asked again.
  */
+static int judge(struct usb_master *master, bool only, char *why, size_t size)
+{
+	char text[ROM_TEXT_MAX];
+	uint8_t rom[8] = {0};
+	int own = find_own(master, rom);
+
+	if (own == -ENODEV || own == -ECANCELED)
+		return own;
+	if (!master->rom[0]) {
+		if (own == 1 && !*master->where)
+			memcpy(master->rom, rom, sizeof(rom));
+		return 0;
+	}
+	if (own > 0)
+		return memcmp(rom, master->rom, 8) != 0 ? -ENXIO : 0;
+	if (own == 0) {
+		/* it may have its supply for a moment only */
+		snprintf(why, size, "the adapter at USB %s does not show its own chip",
+		         master->place.name);
+		return -EIO;
+	}
+	if (only)
+		return 0;
+	rom_print(master->rom, ROM_F_I, text);
+	snprintf(why, size,
+	         "it is not known whether the adapter at USB %s has the chip %s: its wire fails "
+	         "(%s)",
+	         master->place.name, text, strerror(-own));
+	return own == -ENXIO ? -EIO : own;
+}
+
+/* Open it, and look whether it is the one: -ENXIO, and the kernel's driver has it again. */
 static int try_place(struct usb_master *master, const struct usb_place *place, bool only, char *why,
                      size_t size)
 {
-	bool by_rom = master->rom[0] != 0;
-	uint8_t rom[8] = {0};
 	int err = master->system->open(place, &master->chip.port, why, size);
 
 	if (err)
@@ -115,21 +145,14 @@ static int try_place(struct usb_master *master, const struct usb_place *place, b
 			why, size,
 			"the adapter at USB %s does not answer (%s): unplug it and plug it in again",
 			place->name, strerror(-err));
-	int own = err ? 0 : find_own(master, rom);
-
-	if (own == -ENODEV || own == -ECANCELED) {
-		err = own;
-	} else if (!err && by_rom && own > 0) {
-		err = memcmp(rom, master->rom, 8) == 0 ? 0 : -ENXIO;
-	} else if (!err && by_rom && (own == 0 || !only)) {
-		snprintf(why, size, "the adapter at USB %s does not show its own chip",
-		         place->name);
-		err = -EIO;
-	} else if (!err && own == 1 && !*master->where) {
-		memcpy(master->rom, rom, sizeof(rom));
-	}
+	else
+		err = judge(master, only, why, size);
 	if (err)
 		master->master.ops->close(&master->master);
+	if (err == -ENXIO) {
+		master->system->give_back(place);
+		master->place.name[0] = '\0';
+	}
 	return err;
 }
 

@@ -151,6 +151,19 @@ static void test_the_kernels_driver_gets_it_back_at_the_end_and_not_before(void)
 	TEST_ASSERT_TRUE(sticks.stick[0].kernel);
 }
 
+static void test_the_kernels_driver_gets_back_at_once_what_is_not_the_one(void)
+{
+	stick_add(first);
+	stick_add(second);
+	sticks_make("81.000000000002");
+	TEST_ASSERT_EQUAL_STRING("1-2", opened());
+	TEST_ASSERT_FALSE(sticks.stick[1].kernel);
+	stick_pull(&sticks.stick[1]);
+	refused(-ENODEV, "no DS9490R with the chip 81.000000000002");
+	TEST_ASSERT_NOT_EQUAL_UINT(0, sticks.stick[0].opens);
+	TEST_ASSERT_TRUE(sticks.stick[0].kernel);
+}
+
 static void test_one_that_cannot_be_opened_is_the_reason_and_is_tried_again(void)
 {
 	stick_add(first);
@@ -194,7 +207,11 @@ static void test_on_a_short_wire_the_only_one_is_taken_and_of_two_none(void)
 	TEST_ASSERT_EQUAL_INT(-ECOMM, part_reset(sticks.wire));
 	sticks.master->ops->close(sticks.master);
 	stick_add(second);
-	refused(-EIO, "the adapter at USB 1-1 does not show its own chip");
+	refused(-ECOMM, "whether the adapter at USB 1-1 has the chip 81.000000000001");
+	TEST_ASSERT_EQUAL_INT(1, visible());
+	/* nobody has to plug it in again when the wire is mended */
+	sticks.host.now += 10 * HOST_S;
+	TEST_ASSERT_EQUAL_STRING("1-1", opened());
 }
 
 /* It may have its supply for a moment only. */
@@ -216,6 +233,7 @@ int main(void)
 	RUN_TEST(test_one_is_found_by_its_chip_wherever_it_is_plugged_in);
 	RUN_TEST(test_one_is_found_by_its_place_whichever_it_is);
 	RUN_TEST(test_the_kernels_driver_gets_it_back_at_the_end_and_not_before);
+	RUN_TEST(test_the_kernels_driver_gets_back_at_once_what_is_not_the_one);
 	RUN_TEST(test_one_that_cannot_be_opened_is_the_reason_and_is_tried_again);
 	RUN_TEST(test_two_targets_find_theirs);
 	RUN_TEST(test_one_that_does_not_show_its_own_chip_is_asked_again);
