@@ -127,16 +127,24 @@ static void receive(struct clients *c, struct client *client, int64_t now_ns)
 	answer_all(c, client, now_ns);
 }
 
-/* The client is ready, to send or to take. */
-static void turn(struct clients *c, struct client *client, int64_t now_ns)
+/*
+ * When was nothing left to receive? As long as its answers alone were watched for, nobody knows.
+ */
+static void judge_silence(const struct clients *c, struct client *client)
 {
 	int64_t silent_ns = face_came(c->face, c->epoll);
 
-	if (silent_ns > client->empty_ns)
-		client->empty_ns = silent_ns;
 	/* a look at all did not find it ready: nothing was there */
-	if (client->pass < c->whole_pass && c->whole_ns > client->empty_ns)
-		client->empty_ns = c->whole_ns;
+	if (client->pass < c->whole_pass && c->whole_ns > silent_ns)
+		silent_ns = c->whole_ns;
+	if (!client->out_len && silent_ns > client->blind_ns && silent_ns > client->empty_ns)
+		client->empty_ns = silent_ns;
+}
+
+/* The client is ready, to send or to take. */
+static void turn(struct clients *c, struct client *client, int64_t now_ns)
+{
+	judge_silence(c, client);
 	client->pass = c->pass;
 	if (!client->out_len) {
 		receive(c, client, now_ns);
@@ -145,6 +153,7 @@ static void turn(struct clients *c, struct client *client, int64_t now_ns)
 	if (!clients_send(c, client) || client->out_len)
 		return;
 	client->late_ns = 0;
+	client->blind_ns = ows_now();
 	clients_watch(c, EPOLL_CTL_MOD, client->fd, number_of(c, client), EPOLLIN);
 	answer_all(c, client, now_ns);
 }

@@ -15,18 +15,22 @@
 static struct face face;
 static struct clients clients;
 static struct config_modbus options;
-static int64_t now_ns;
+static int64_t now_ns, came_ns;
+
+#define WIDE 4 /* a function with the longest answer */
 
 /* Each request is answered by itself. */
 static size_t answer(void *ctx, const struct client *client, const uint8_t *request,
                      uint8_t bytes[FRAME_MOST])
 {
-	size_t len = 6u + request[5];
+	size_t len = 6u + request[5], more = request[7] == WIDE ? FRAME_MOST - len : 0;
 
 	(void)ctx;
 	TEST_ASSERT_TRUE(client->used && client->came_ns <= ows_now());
+	came_ns = client->came_ns;
 	memcpy(bytes, request, len);
-	return len;
+	memset(bytes + len, 0, more);
+	return len + more;
 }
 
 void setUp(void)
@@ -140,6 +144,37 @@ static void test_what_is_no_request_closes_the_connection(void)
 	close(fd);
 }
 
+static void test_what_waits_behind_answers_that_are_not_taken_grows_old(void)
+{
+	static const uint8_t wide[12] = {[5] = 6, [6] = 1, [7] = WIDE};
+	const int few = 4096;
+	uint8_t many[64 * sizeof(wide)];
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	const struct client *client = clients.places;
+	uint64_t sent = 64;
+	int64_t sent_ns;
+
+	for (size_t i = 0; i < sizeof(many); i++)
+		many[i] = wide[i % sizeof(wide)];
+	TEST_ASSERT_EQUAL_INT(0, setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &few, sizeof(few)));
+	connect_to(fd);
+	run_clients();
+	TEST_ASSERT_EQUAL_INT(0,
+	                      setsockopt(client->fd, SOL_SOCKET, SO_SNDBUF, &few, sizeof(few)));
+	for (; !client->out_len && sent < 100000; sent += 64)
+		sends(fd, many, sizeof(many));
+	TEST_ASSERT_NOT_EQUAL_size_t(0, client->out_len);
+	sends(fd, many, sizeof(many));
+	sent_ns = ows_now();
+	/* the face sees nothing ready as long as the client takes nothing */
+	face.came_ns[0] = sent_ns + 1;
+	while (got(fd) > 0)
+		run_clients();
+	TEST_ASSERT_EQUAL_UINT64(sent, clients.requests);
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(sent_ns, came_ns);
+	close(fd);
+}
+
 static void test_of_one_address_the_most_silent_gives_way(void)
 {
 	int first = join(), second = join(), third;
@@ -196,6 +231,7 @@ int main(void)
 	RUN_TEST(test_a_request_is_answered_when_it_is_whole);
 	RUN_TEST(test_one_that_owes_the_rest_of_a_request_is_closed_and_a_silent_one_is_not);
 	RUN_TEST(test_what_is_no_request_closes_the_connection);
+	RUN_TEST(test_what_waits_behind_answers_that_are_not_taken_grows_old);
 	RUN_TEST(test_of_one_address_the_most_silent_gives_way);
 	RUN_TEST(test_without_a_descriptor_the_most_silent_gives_way_too);
 	RUN_TEST(test_without_the_block_all_are_closed);
