@@ -93,6 +93,9 @@ int map_write(const struct map *map, const char *path)
 	/* a power cut must leave the one or the other */
 	if (fflush(out) || fsync(fileno(out)))
 		err = -errno;
+	/* a line before the last may be missing though there is room again */
+	if (ferror(out) && !err)
+		err = -EIO;
 	if (fclose(out) && !err)
 		err = -errno;
 	if (!err && rename(fresh, path))

@@ -246,7 +246,7 @@ static int lock_map(struct modbus *m)
 	m->lock = -1;
 	if (map_path(m->face->arguments->instance, m->path))
 		m->path[0] = '\0';
-	if (history_make_above(m->path))
+	if (!*m->path || history_make_above(m->path))
 		return 0;
 	memcpy(directory, m->path, sizeof(directory));
 	*strrchr(directory, '/') = '\0';
