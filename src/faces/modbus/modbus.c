@@ -123,9 +123,11 @@ static enum exception write_to(void *ctx, unsigned place, double number, bool re
 	if (!look_is_current(m->face) || ows_info(m->face->ows, signal, &info))
 		return EXCEPTION_BUSY;
 	wrong = writing_may(&m->writing, info.name, &m->client->from);
-	return wrong || !really ? wrong
-	                        : writing_set(&m->writing, info.name, number, &m->client->from,
-	                                      m->client->came_ns);
+	if (wrong)
+		return wrong;
+	return really ? writing_set(&m->writing, info.name, number, &m->client->from,
+	                            m->client->came_ns)
+	              : writing_fits(&m->writing, &info, number, &m->client->from);
 }
 
 static enum exception beat_of(void *ctx, bool really)

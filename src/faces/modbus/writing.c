@@ -101,6 +101,27 @@ static void refuse(struct writing *w, const struct face_command *command,
 	            face_refusal(command, info, err, words));
 }
 
+enum exception writing_fits(struct writing *w, const struct ows_info *info, double number,
+                            const struct listen_address *from)
+{
+	enum ows_type type = (enum ows_type)info->type;
+	char person[WRITING_PERSON], text[VALUE_TEXT_MAX];
+	const struct face_command command = {.program = w->face->ops->program,
+	                                     .name = info->name,
+	                                     .text = text,
+	                                     .person = writing_person(from, person)};
+	int64_t value;
+	int err;
+
+	value_to_text(OWS_DOUBLE, value_of_double(number), text);
+	err = value_parse(type, text, &value);
+	if (!err && (value_number(type, value) < info->min || value_number(type, value) > info->max))
+		err = -ERANGE;
+	if (err)
+		refuse(w, &command, info, err);
+	return writing_refusal(err);
+}
+
 enum exception writing_set(struct writing *w, const char *name, double number,
                            const struct listen_address *from, int64_t came_ns)
 {

@@ -29,6 +29,9 @@ struct writing {
 /* May a client at that address command the signal, or beat (NULL)? */
 enum exception writing_may(const struct writing *w, const char *name,
                            const struct listen_address *from);
+/* Does the signal take the number, as far as its type, Min and Max say? If not, the log has it. */
+enum exception writing_fits(struct writing *w, const struct ows_info *info, double number,
+                            const struct listen_address *from);
 /* Set it; came_ns as in struct face_command. */
 enum exception writing_set(struct writing *w, const char *name, double number,
                            const struct listen_address *from, int64_t came_ns);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of what clients may command, and of how they are called. */
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 #include "unity.h"
@@ -98,6 +99,24 @@ static void test_what_is_refused_is_so_by_the_exception_that_fits(void)
 	}
 }
 
+static void test_a_number_has_to_fit_before_any_is_set(void)
+{
+	struct ows_info info = {.name = "pump", .type = OWS_BOOL, .min = NAN, .max = NAN};
+
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_fits(&w, &info, 1, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, 0.5, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, 2, &plc));
+	info.type = OWS_DOUBLE;
+	info.min = -10;
+	info.max = 25.5;
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_fits(&w, &info, -10, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_fits(&w, &info, 25.5, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, 25.6, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, -10.1, &plc));
+	TEST_ASSERT_EQUAL_UINT64(4, w.refused);
+	TEST_ASSERT_EQUAL_UINT(0, instance_controllers(&in));
+}
+
 static void test_a_client_may_what_the_configuration_says(void)
 {
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_may(&w, NULL, &other));
@@ -137,6 +156,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_client_is_a_controller_that_beats_as_long_as_it_asks);
 	RUN_TEST(test_what_is_refused_is_so_by_the_exception_that_fits);
+	RUN_TEST(test_a_number_has_to_fit_before_any_is_set);
 	RUN_TEST(test_a_client_may_what_the_configuration_says);
 	RUN_TEST(test_a_client_that_promised_a_beat_is_lost_at_the_end_and_says_no_goodbye);
 	RUN_TEST(test_a_person_has_the_end_of_a_long_address);
