@@ -115,7 +115,8 @@ enum exception writing_fits(struct writing *w, const struct ows_info *info, doub
 
 	value_to_text(OWS_DOUBLE, value_of_double(number), text);
 	err = value_parse(type, text, &value);
-	if (!err && (value_number(type, value) < info->min || value_number(type, value) > info->max))
+	if (!err &&
+	    (value_number(type, value) < info->min || value_number(type, value) > info->max))
 		err = -ERANGE;
 	if (err)
 		refuse(w, &command, info, err);

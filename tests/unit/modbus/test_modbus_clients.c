@@ -159,8 +159,7 @@ static void test_what_waits_behind_answers_that_are_not_taken_grows_old(void)
 	TEST_ASSERT_EQUAL_INT(0, setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &few, sizeof(few)));
 	connect_to(fd);
 	run_clients();
-	TEST_ASSERT_EQUAL_INT(0,
-	                      setsockopt(client->fd, SOL_SOCKET, SO_SNDBUF, &few, sizeof(few)));
+	TEST_ASSERT_EQUAL_INT(0, setsockopt(client->fd, SOL_SOCKET, SO_SNDBUF, &few, sizeof(few)));
 	for (; !client->out_len && sent < 100000; sent += 64)
 		sends(fd, many, sizeof(many));
 	TEST_ASSERT_NOT_EQUAL_size_t(0, client->out_len);
