@@ -130,7 +130,10 @@ static int judge(struct usb_master *master, bool only, char *why, size_t size)
 	return own == -ENXIO ? -EIO : own;
 }
 
-/* Open it, and look whether it is the one: -ENXIO, and the kernel's driver has it again. */
+/*
+ * Open it, and look whether it is the one: -ENXIO. The kernel's driver gets back at once what may be
+ * another.
+ */
 static int try_place(struct usb_master *master, const struct usb_place *place, bool only, char *why,
                      size_t size)
 {
@@ -149,7 +152,7 @@ static int try_place(struct usb_master *master, const struct usb_place *place, b
 		err = judge(master, only, why, size);
 	if (err)
 		master->master.ops->close(&master->master);
-	if (err == -ENXIO) {
+	if (err == -ENXIO || (err && !only)) {
 		master->system->give_back(place);
 		master->place.name[0] = '\0';
 	}

@@ -209,6 +209,7 @@ static void test_on_a_short_wire_the_only_one_is_taken_and_of_two_none(void)
 	stick_add(second);
 	refused(-ECOMM, "whether the adapter at USB 1-1 has the chip 81.000000000001");
 	TEST_ASSERT_EQUAL_INT(1, visible());
+	TEST_ASSERT_TRUE(sticks.stick[0].kernel && sticks.stick[1].kernel);
 	/* nobody has to plug it in again when the wire is mended */
 	sticks.host.now += 10 * HOST_S;
 	TEST_ASSERT_EQUAL_STRING("1-1", opened());
