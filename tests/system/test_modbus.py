@@ -123,8 +123,13 @@ class Client:
         return self.registers(16 * place + QUALITY, 1)[0]
 
     def becomes(self, place, quality):
-        until(lambda: self.quality(place) == quality, 20,
-              lambda: f"place {place} has quality {quality}, not {self.quality(place)}")
+        def now():
+            try:
+                return self.quality(place)
+            except Refused as refusal:  # as long as it has no signal
+                return f"exception {refusal}"
+
+        until(lambda: now() == quality, 20, lambda: f"place {place} has quality {quality}, not {now()}")
 
 
 def refused(call, *arguments):
