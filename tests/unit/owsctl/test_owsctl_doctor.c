@@ -158,7 +158,9 @@ static void test_only_commands_that_change_no_plant_are_safe(void)
 	static const char *const yes[] = {
 		"sudo modprobe i2c-dev    # at each start: echo i2c-dev | sudo tee /etc/x.conf",
 		"sudo systemd-sysusers    # then: sudo systemctl restart 'owsd@*'",
+		"sudo systemd-tmpfiles --create",
 		"sudo systemctl start owsd-mqtt@OWS.service",
+		"sudo systemctl restart owsd-web@my_house.2",
 	};
 	static const char *const no[] = {
 		"",
@@ -166,6 +168,15 @@ static void test_only_commands_that_change_no_plant_are_safe(void)
 		"sudo systemctl enable --now owsd-mqtt@OWS.service",
 		"sudo systemctl start owsd-mqtt@OWS.service; reboot",
 		"sudo systemctl start owsd-$(reboot)@OWS.service",
+		/* what a program may have written into its report */
+		"sudo systemd-tmpfiles --create /tmp/mine.conf",
+		"sudo systemd-sysusers /tmp/mine.conf",
+		"sudo modprobe i2c-dev -C /tmp/mine",
+		"sudo systemctl start owsd-mqtt@OWS.service reboot.target",
+		"sudo systemctl restart owsd-web@OWS ssh",
+		"sudo systemctl restart owsd-[a-z]@OWS",
+		"sudo systemctl restart owsd-",
+		"sudo timedatectl set-ntp trueish",
 		"sudo reboot",
 		"echo dtoverlay=w1-gpio | sudo tee -a /boot/firmware/config.txt && sudo reboot",
 	};

@@ -33,7 +33,10 @@ static const struct {
 	{"faces", check_faces},       {"clock", check_clock},
 };
 
-/* How remedies begin that change nothing of a plant, and nothing that somebody has decided. */
+/*
+ * Remedies that change nothing of a plant, and nothing that somebody has decided; behind '-' stands
+ * the rest of one unit's name. Programs write remedies too, and root runs them: nothing more fits.
+ */
 static const char *const safe[] = {
 	"sudo modprobe i2c-dev",          "sudo systemd-sysusers",
 	"sudo systemd-tmpfiles --create", "sudo systemctl start owsd-",
@@ -51,12 +54,19 @@ static size_t remedy_length(const char *remedy)
 
 bool doctor_is_safe(const char *remedy)
 {
-	/* it is run without a shell, and would mean something else with one */
-	if (strcspn(remedy, ";&|<>()$`\\\"'*?~") < remedy_length(remedy))
-		return false;
-	for (size_t i = 0; i < sizeof(safe) / sizeof(safe[0]); i++)
-		if (!strncmp(remedy, safe[i], strlen(safe[i])))
+	static const char unit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+				   "0123456789-_.@";
+	size_t whole = remedy_length(remedy);
+
+	for (size_t i = 0; i < sizeof(safe) / sizeof(safe[0]); i++) {
+		size_t len = strlen(safe[i]), rest;
+
+		if (strncmp(remedy, safe[i], len) != 0)
+			continue;
+		rest = strspn(remedy + len, unit);
+		if (safe[i][len - 1] == '-' ? rest && len + rest == whole : len == whole)
 			return true;
+	}
 	return false;
 }
 
