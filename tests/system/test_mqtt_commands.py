@@ -8,6 +8,7 @@ import json
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import threading
 
@@ -176,6 +177,26 @@ def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
     assert [c["stat_t"] for c in entity.values() if c.get("uniq_id", "").endswith("temperature")] == ["owsd/pi7/hall"], entity
     assert house.last(f"chip/{SENSOR}/problem") == chip
     until(lambda: "rename by user" in writer.log() and "for mqtt:127.0.0.1" in writer.log(), 20, writer.log)
+
+
+def test_without_rename_a_broker_that_sends_one_unasked_is_refused(scene):
+    topic = b"owsd/pi7/room/rename"
+
+    def serve(listener):
+        with contextlib.suppress(OSError):
+            while True:
+                with listener.accept()[0] as connection:
+                    connection.recv(4096)
+                    connection.sendall(b"\x20\x03\x00\x00\x00")
+                    connection.recv(4096)
+                    connection.sendall(bytes([0x30, len(topic) + 7, 0, len(topic)]) + topic + b"\x00hall")
+                    while connection.recv(4096):
+                        pass
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        threading.Thread(target=serve, args=(listener,), daemon=True).start()
+        house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{listener.getsockname()[1]}")
+        logged(house.face, "command to room refused: Rename is off in the block Mqtt: set it to on there, and reload owsd")
+        assert house.face.stop() == 0
 
 
 def test_without_write_a_command_sets_nothing_and_the_log_says_why_and_what_to_do(scene):

@@ -243,6 +243,9 @@ static void on_rename(struct mqtt *m, const char *name, const struct row *row,
 	int len, err;
 
 	why = why ? why : wrong;
+	/* a broker can send what nobody has subscribed to */
+	if (!m->options.rename)
+		why = "Rename is off in the block Mqtt: set it to on there, and reload owsd";
 	if (!why && (!row || !look_is_current(m->broker.face)))
 		why = row ? "owsd is away, or reloads: try again" : "there is no such signal";
 	len = snprintf(order, sizeof(order),
