@@ -188,6 +188,11 @@ def test_enable_shows_each_command_and_the_address_of_the_page(scene):
     done = scene.owsctl(daemon, "enable", "--dry-run", "history")
     assert done.stdout.splitlines()[:2] == [f"+ systemctl enable owsd-recorder@{name}.service",
                                             f"+ systemctl restart owsd-recorder@{name}.service"]
+    mqtt = '  Mqtt { Broker "mqtt://127.0.0.1:1" Rename on }\n'
+    other = scene.owsd(text.replace("  Item", mqtt + "  Item", 1), name=scene.name())
+    done = scene.owsctl(other, "enable", "--dry-run", "mqtt")
+    assert done.stdout.splitlines()[:2] == ["+ usermod -aG owsd-config owsd-mqtt",
+                                            f"+ systemctl enable --now owsd-writer@{other.name}.socket"], done.stdout
     done = scene.owsctl(daemon, "disable", "--dry-run", "web")
     assert done.stdout == (f"+ systemctl disable --now owsd-web@{name}.service "
                            f"owsd-web@{name}.socket\n"), done.stdout

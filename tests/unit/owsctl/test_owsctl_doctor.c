@@ -273,7 +273,7 @@ static void test_the_table_of_faces_says_what_starts_each(void)
 static void test_a_face_has_what_its_block_asks_for(void)
 {
 	static const char text[] = "OwsDrv { Web { Listen \"127.0.0.1:8080\" Write on }\n"
-				   "Mqtt { Broker \"mqtt://h\" } }";
+				   "Mqtt { Broker \"mqtt://h\" Rename on } }";
 	struct config_report report = {0};
 	struct config *config;
 	char addresses[200];
@@ -285,6 +285,7 @@ static void test_a_face_has_what_its_block_asks_for(void)
 	TEST_ASSERT_TRUE(face_has(config, "owsd-web", "Write"));
 	TEST_ASSERT_FALSE(face_has(config, "owsd-web", "Configure"));
 	TEST_ASSERT_FALSE(face_has(config, "owsd-mqtt", "Write"));
+	TEST_ASSERT_TRUE(face_has(config, "owsd-mqtt", "Rename"));
 	TEST_ASSERT_FALSE(face_has(config, "owsd-recorder", "Write"));
 	face_addresses(config, addresses, sizeof(addresses));
 	TEST_ASSERT_EQUAL_STRING("http://127.0.0.1:8080/", addresses);

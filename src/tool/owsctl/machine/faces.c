@@ -16,6 +16,7 @@
 const struct face_right face_rights[FACE_RIGHTS] = {
 	{"Write", "owsd-control", NULL},
 	{"Configure", "owsd-config", "owsd-writer"},
+	{"Rename", "owsd-config", "owsd-writer"},
 };
 
 /* The next column of a row, without blanks around it. */

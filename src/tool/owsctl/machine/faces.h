@@ -20,7 +20,7 @@ struct face_row {
 struct face_right {
 	const char *key, *group, *helper;
 };
-#define FACE_RIGHTS 2
+#define FACE_RIGHTS 3
 extern const struct face_right face_rights[FACE_RIGHTS];
 
 /* Read the table: how many rows, or a negative errno of its file. */
