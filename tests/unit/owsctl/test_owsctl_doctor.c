@@ -62,15 +62,16 @@ static FILE *make_file(const char *name)
 	return file;
 }
 
-/* The text with the folder in place of ROOT. */
+/* The text with the folder in place of each ROOT. */
 static void put_root(const char *text, char *to, size_t size)
 {
-	const char *at = strstr(text, "ROOT");
+	const char *at;
+	size_t used = 0;
 
-	if (at)
-		snprintf(to, size, "%.*s%s%s", (int)(at - text), text, root, at + strlen("ROOT"));
-	else
-		snprintf(to, size, "%s", text);
+	for (; (at = strstr(text, "ROOT")); text = at + strlen("ROOT"))
+		used += (size_t)snprintf(to + used, size - used, "%.*s%s", (int)(at - text), text,
+		                         root);
+	snprintf(to + used, size - used, "%s", text);
 }
 
 /* Make its files; its expected first line goes to first. */

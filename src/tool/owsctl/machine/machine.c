@@ -70,13 +70,17 @@ static void take_message(void *ctx, bool is_error, const char *message)
 		              d->instance);
 }
 
-/* The way of docs/bring-up.md: the service has the chip, so it is stopped for the scan. */
-static void advise_scan(struct doctor *d)
+/*
+ * The way of docs/bring-up.md: the service has the chip, so it is stopped for the scan. What stands
+ * in a file, such as blocks for programs, stays.
+ */
+static void advise_scan(struct doctor *d, bool there)
 {
 	report_remedy(&d->found,
-	              "sudo systemctl stop owsd@%s; owsctl -t auto scan --rio >new.rio && sudo cp "
-	              "new.rio %s; sudo systemctl start owsd@%s",
-	              d->instance, d->file, d->instance);
+	              "sudo systemctl stop owsd@%s; owsctl -t auto scan --rio %s%s%s>new.rio && "
+	              "sudo cp new.rio %s; sudo systemctl start owsd@%s",
+	              d->instance, there ? "--merge " : "", there ? d->file : "", there ? " " : "",
+	              d->file, d->instance);
 }
 
 void check_configuration(struct doctor *d)
@@ -88,7 +92,7 @@ void check_configuration(struct doctor *d)
 		if (!units_owsd(d))
 			return;
 		report_add(&d->found, BOARD_MISSING, "there is no %s", d->file);
-		advise_scan(d);
+		advise_scan(d, false);
 		return;
 	}
 	if (config_load(d->file, &told.report, &d->config) == 0)
@@ -97,7 +101,7 @@ void check_configuration(struct doctor *d)
 	if (!d->config || d->errors || d->config->item_count)
 		return;
 	report_add(&d->found, BOARD_MISSING, "%s has no signals", d->file);
-	advise_scan(d);
+	advise_scan(d, true);
 }
 
 /* --- The board ------------------------------------------------------------------------------- */
