@@ -14,6 +14,7 @@
 
 #include "unity.h"
 
+#include "hal/base/time.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
 #include "src/tool/owsctl/machine/command.h"
@@ -191,14 +192,16 @@ static void test_only_commands_that_change_no_plant_are_safe(void)
 static void test_a_command_is_run_without_a_shell(void)
 {
 	static const char *const says[] = {"echo", "$HOME", NULL}, *const fails[] = {"false", NULL},
-				 *const absent[] = {"/nowhere/program", NULL};
+				 *const absent[] = {"/nowhere/program", NULL},
+				 *const hangs[] = {"sleep", "600", NULL};
 	char text[64], small[4];
 
-	TEST_ASSERT_TRUE(command_output(says, text, sizeof(text)));
+	TEST_ASSERT_TRUE(command_output(says, INT64_MAX, text, sizeof(text)));
 	TEST_ASSERT_EQUAL_STRING("$HOME\n", text);
-	TEST_ASSERT_FALSE(command_output(fails, text, sizeof(text)));
-	TEST_ASSERT_FALSE(command_output(absent, text, sizeof(text)));
-	command_output(says, small, sizeof(small));
+	TEST_ASSERT_FALSE(command_output(fails, INT64_MAX, text, sizeof(text)));
+	TEST_ASSERT_FALSE(command_output(absent, INT64_MAX, text, sizeof(text)));
+	TEST_ASSERT_FALSE(command_output(hangs, ows_now() + 200 * NS_PER_MS, text, sizeof(text)));
+	command_output(says, INT64_MAX, small, sizeof(small));
 	TEST_ASSERT_LESS_THAN_size_t(sizeof(small), strlen(small));
 	TEST_ASSERT_EQUAL(0, command_line("true beyond", 4));
 	TEST_ASSERT_NOT_EQUAL(0, command_line("", 0));

@@ -2,6 +2,7 @@
 /* Runs commands of the system, and waits for their end. */
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdint.h>
@@ -10,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "src/public/ows.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/machine/command.h"
 
@@ -50,7 +52,7 @@ static bool ended_well(pid_t pid)
 	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-bool command_output(const char *const words[], char *text, size_t size)
+bool command_output(const char *const words[], int64_t until_ns, char *text, size_t size)
 {
 	size_t len = 0;
 	ssize_t n = 1;
@@ -64,6 +66,14 @@ bool command_output(const char *const words[], char *text, size_t size)
 	close(ends[1]);
 	/* a command that has more to say than there is room for fails */
 	while (!err && n > 0 && len < size - 1) {
+		struct pollfd out = {.fd = ends[0], .events = POLLIN};
+
+		if (ows_now() >= until_ns) {
+			kill(pid, SIGKILL);
+			break;
+		}
+		if (poll(&out, 1, 100) <= 0)
+			continue;
 		n = read(ends[0], text + len, size - 1 - len);
 		len += n > 0 ? (size_t)n : 0;
 	}

@@ -4,11 +4,15 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define COMMAND_WORDS 48
 
-/* Run it, and take what it writes to stdout. False: it cannot run, or fails; text is "" then. */
-bool command_output(const char *const words[], char *text, size_t size);
+/*
+ * Run it, and take what it writes to stdout. False: it cannot run, fails, or has not ended its
+ * output by then and is killed; text is "" then.
+ */
+bool command_output(const char *const words[], int64_t until_ns, char *text, size_t size);
 /*
  * Print "+ COMMAND", and run it; dry: print alone. Returns 0, or -EIO after saying that it failed.
  */
