@@ -131,8 +131,8 @@ static int judge(struct usb_master *master, bool only, char *why, size_t size)
 }
 
 /*
- * Open it, and look whether it is the one: -ENXIO. The kernel's driver gets back at once what may be
- * another.
+ * Open it, and look whether it is the one: -ENXIO. The kernel's driver gets back at once what may
+ * be another.
  */
 static int try_place(struct usb_master *master, const struct usb_place *place, bool only, char *why,
                      size_t size)

@@ -212,7 +212,7 @@ def test_what_is_no_request_is_refused_and_changes_nothing(scene):
             (b"owsd-writer 1\n" + b"x" * 4096, "longer than 1024"),
             (order(base, text) + b"more", "more bytes came"),
             (order(base, text).replace(b"length: 22", b"length: 99999999"), "longer than"),
-            (order(base, text, do="remove"), "replace or restore")):
+            (order(base, text, do="remove"), "restore or rename")):
         answer = ask(writer.socket, data)
         assert answer.status == "refused" and words in answer.why, (data[:40], answer.text)
     for cut in (5, 40, len(order(base, text)) - 3):
