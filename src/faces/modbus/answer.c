@@ -151,7 +151,8 @@ static enum exception read_bits(struct exchange *x)
 	memset(x->answer + 2, 0, x->answer[1]);
 	for (unsigned i = 0; i < count && !wrong; i++) {
 		wrong = read_bit(x, first + i, &bit);
-		x->answer[2 + i / 8] |= (uint8_t)(bit << i % 8);
+		if (!wrong && bit)
+			x->answer[2 + i / 8] |= (uint8_t)(1u << i % 8);
 	}
 	x->len = 2u + x->answer[1];
 	return wrong;

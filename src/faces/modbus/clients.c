@@ -243,12 +243,14 @@ static void accept_some(struct clients *c, int listener, int64_t now_ns)
 		struct sockaddr_storage at;
 		socklen_t len = sizeof(at);
 		struct listen_address from;
+		struct client *silent;
 		unsigned count;
 		int fd = listen_accept(listener, (struct sockaddr *)&at, &len);
 
 		/* no descriptor is left, though somebody waits: that of the most silent is */
-		if (listen_is_full(fd) && i == 0 && c->count) {
-			drop(c, most_silent(c, NULL, &count), "closed: too many files are open");
+		silent = listen_is_full(fd) && i == 0 ? most_silent(c, NULL, &count) : NULL;
+		if (silent) {
+			drop(c, silent, "closed: too many files are open");
 			continue;
 		}
 		if (fd < 0)

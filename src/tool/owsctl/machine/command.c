@@ -15,8 +15,6 @@
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/machine/command.h"
 
-extern char **environ;
-
 /* out: where its stdout goes, and stderr nowhere; -1: both stay. */
 static int spawn(const char *const words[], int out, pid_t *pid)
 {

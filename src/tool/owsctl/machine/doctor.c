@@ -2,6 +2,7 @@
 /* owsctl doctor: what is wrong on this machine, in the order in which to mend it, and with what. */
 #include <errno.h>
 #include <getopt.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -177,13 +178,13 @@ static void fix(const struct doctor *d)
 static const char *take_root(const char *given)
 {
 	static char root[DOCTOR_ROOT + 1];
-	char dir[sizeof(root) + 16], *whole = realpath(given, NULL);
+	char dir[sizeof(root) + 16], whole[PATH_MAX];
+	int err = realpath(given, whole) ? 0 : errno;
 
-	if (!whole || strlen(whole) > DOCTOR_ROOT)
+	if (err || strlen(whole) > DOCTOR_ROOT)
 		ctl_end(ctl_fail("--root %s: %s", ctl_word(given),
-		                 strerror(whole ? ENAMETOOLONG : errno)));
-	snprintf(root, sizeof(root), "%s", whole);
-	free(whole);
+		                 strerror(err ? err : ENAMETOOLONG)));
+	snprintf(root, sizeof(root), "%.*s", DOCTOR_ROOT, whole);
 	snprintf(dir, sizeof(dir), "%s/run/owsd", root);
 	setenv("OWS_DIR", dir, 0);
 	return root;

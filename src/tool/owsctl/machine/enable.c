@@ -107,9 +107,9 @@ static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
 	char file[INSTANCE_FIELD];
 	struct config_report report = {.line = ctl_report};
 	struct change change = {.ctl = ctl};
-	int count = faces_table(rows), c;
+	int count = faces_table(rows);
 
-	while ((c = ctl_option(ctl, argc, argv, "D")) != -1)
+	while (ctl_option(ctl, argc, argv, "D") != -1)
 		change.dry = true;
 	if (count < 0)
 		return ctl_fail("the table of the programs beside owsd: %s", strerror(-count));

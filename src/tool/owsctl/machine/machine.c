@@ -29,7 +29,7 @@ void check_disk(struct doctor *d)
 
 	if (!seen_output(d, "df", words))
 		return;
-	strsep(&rest, "\n");
+	(void)strsep(&rest, "\n"); /* the heads */
 	while ((line = strsep(&rest, "\n"))) {
 		unsigned long long room;
 		char at[64];
