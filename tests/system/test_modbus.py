@@ -166,7 +166,7 @@ def test_a_signal_is_read_in_each_form_with_its_quality_age_and_alarm(scene):
         # an output, of whole numbers; a string has no place
         assert scene.owsctl(daemon, "set", "-w", "20", "relays", "5").returncode == 0
         until(lambda: plc.number_at(32 + SHORT, ">h") == 5, 20, "the output is shown")
-        assert plc.registers(32 + DECIMALS, 2) == (0, 3)  # simulated, an output
+        assert plc.registers(32 + DECIMALS, 2) == (0, 0x203)  # check function; simulated, an output
         plc.becomes(3, NO_DEVICE)
         assert math.isnan(plc.number_at(48 + DOUBLE, ">d")) and math.isnan(plc.number_at(48 + FLOAT, ">f"))
         assert plc.number_at(48 + LONG, ">I") == 0x80000000 and plc.number_at(48 + SHORT, ">H") == 0x8000
