@@ -178,6 +178,7 @@ def completed(scene, place, *words):
     done = subprocess.run(["bash", "-c", script, "bash", "owsctl", *words], capture_output=True,
                           text=True, check=False, cwd=scene.path, timeout=60,
                           env=dict(os.environ, OWS_DIR=str(place),
+                                   OWSD_BOARDS=str(owsdtest.SOURCE / "board/boards"),
                                    PATH=f"{owsdtest.BUILD}:{os.environ['PATH']}"))
     assert done.returncode == 0 and not done.stderr, done
     return done.stdout.split()
