@@ -202,6 +202,48 @@ def test_an_access_list_that_lets_nothing_through_is_named(scene):
     assert house.face.log().count("refuses what") == 1
 
 
+def packets(connection):
+    """What the client sends, packet by packet: the first byte and what follows the length."""
+    stream = connection.makefile("rb")
+    while first := stream.read(1):
+        length = shift = 0
+        while True:
+            byte = stream.read(1)[0]
+            length |= (byte & 127) << shift
+            shift += 7
+            if byte < 128:
+                break
+        yield first[0], stream.read(length)
+
+
+def test_a_subscription_that_is_refused_is_asked_for_again(scene):
+    """As by a server of a cluster that has no leader yet: commands must not be lost for good."""
+    port, asked = free_port(), []
+
+    def serve(listener):
+        connection = listener.accept()[0]
+        for first, rest in packets(connection):
+            if first >> 4 == 1:
+                connection.sendall(b"\x20\x02\x00\x00")
+            elif first >> 4 == 8:
+                asked.append(rest[4:-1].decode())
+                code = 0x80 if asked.count(asked[-1]) < 3 and "set" in asked[-1] else 1
+                connection.sendall(bytes([0x90, 3]) + rest[:2] + bytes([code]))
+            elif first >> 4 == 3 and first & 6:
+                at = 2 + int.from_bytes(rest[:2], "big")
+                connection.sendall(b"\x40\x02" + rest[at:at + 2])
+            elif first >> 4 == 12:
+                connection.sendall(b"\xd0\x00")
+    listener = socket.create_server(("127.0.0.1", port))
+    threading.Thread(target=serve, args=(listener,), daemon=True).start()
+    house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{port}", Write=raw("on"), Protocol="3.1.1")
+    until(lambda: sum("set" in topic for topic in asked) == 3, 150, lambda: asked)
+    time.sleep(1)  # nothing is asked for once more
+    assert all(asked.count(topic) == (3 if "set" in topic else 1) for topic in asked), asked
+    assert house.face.log().count("refuses a subscription") == 1, house.face.log()
+    listener.close()
+
+
 def test_a_broker_without_mqtt_5_gets_3_1_1(scene):
     port, levels = free_port(), []
 

@@ -271,6 +271,7 @@ static void connected(struct broker *b, int64_t now_ns)
 	b->again = b->known & 1u << b->way;
 	b->known |= 1u << b->way;
 	b->refusal[0] = '\0';
+	client_forget_topics(b);
 	if (b->vain & 1u << b->way) {
 		b->trouble[0] = '\0';
 		b->ops->connected(b->ctx);
@@ -369,6 +370,8 @@ void broker_tick(struct broker *b, int64_t now_ns)
 {
 	/* news that come all the time must not put it off */
 	b->tend_ns = now_ns + (b->state == BROKER_CONNECTED ? TEND_NS : NS_PER_S);
+	if (b->state == BROKER_CONNECTED)
+		client_subscribe_again(b, now_ns);
 	if (b->state == BROKER_WAITING && now_ns >= b->next_ns)
 		attempt(b, now_ns);
 	else if (b->client)

@@ -120,19 +120,36 @@ void client_refuse(struct broker *b, const char *topic, int err)
 	log_err(b->face->log, "%s", b->refusal);
 }
 
+static struct broker_topic *topic_of(struct broker *b, int mid)
+{
+	for (unsigned i = 0; i < b->topic_count; i++)
+		if (b->topics[i].mid == mid)
+			return &b->topics[i];
+	return NULL;
+}
+
 static void on_subscribe(struct mosquitto *client, void *ctx, int mid, int count,
                          const int *granted, const mosquitto_property *properties)
 {
 	struct broker *b = ctx;
+	struct broker_topic *topic = topic_of(b, mid);
 	char name[MQTT_WAY_NAME];
 
 	(void)client;
-	(void)mid;
 	(void)properties;
 	/* of several the first is our own, if there is one; the other profiles' may be refused */
 	if (!count || granted[0] < 128 || (count > 1 && !b->options->profile->below))
 		return;
 	b->refusals++;
+	if (topic) {
+		topic->refused = true;
+		if (b->ask_ns)
+			return;
+		b->ask_ns = ows_now() +
+		            backoff_pause(&b->asking, BACKOFF_REFUSED, backoff_random());
+		if (b->asking.failed[BACKOFF_REFUSED] > 1)
+			return;
+	}
 	log_err(b->face->log,
 	        "%.100s refuses a subscription; its access list has to let us read %.60s/# and "
 	        "the topics of discovery",
@@ -381,11 +398,39 @@ static int subscribe_options(const struct broker *b)
 	return client_mqtt5(b) ? MQTT_SUB_OPT_RETAIN_AS_PUBLISHED | MQTT_SUB_OPT_NO_LOCAL : 0;
 }
 
-void client_subscribe(struct broker *b, const char *topic)
+static void ask(struct broker *b, struct broker_topic *topic)
 {
-	if (b->client)
-		mosquitto_subscribe_v5(b->client, NULL, topic, client_sure_qos(b),
-		                       subscribe_options(b), NULL);
+	topic->refused = false;
+	mosquitto_subscribe_v5(b->client, &topic->mid, topic->name, client_sure_qos(b),
+	                       subscribe_options(b), NULL);
+}
+
+void client_subscribe(struct broker *b, const char *name)
+{
+	struct broker_topic *topic = &b->topics[b->topic_count];
+
+	if (!b->client || b->topic_count == BROKER_TOPICS)
+		return;
+	b->topic_count++;
+	snprintf(topic->name, sizeof(topic->name), "%s", name);
+	ask(b, topic);
+}
+
+void client_subscribe_again(struct broker *b, int64_t now_ns)
+{
+	if (!b->client || !b->ask_ns || now_ns < b->ask_ns)
+		return;
+	b->ask_ns = 0;
+	for (unsigned i = 0; i < b->topic_count; i++)
+		if (b->topics[i].refused)
+			ask(b, &b->topics[i]);
+}
+
+void client_forget_topics(struct broker *b)
+{
+	b->topic_count = 0;
+	b->ask_ns = 0;
+	backoff_forget(&b->asking);
 }
 
 void client_look(struct broker *b, char *const *topics, int count, bool begin)

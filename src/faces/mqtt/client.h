@@ -11,6 +11,7 @@
 #include "src/faces/mqtt/options.h"
 #include "src/faces/mqtt/taken.h"
 
+#define BROKER_TOPICS 6
 #define BROKER_WORDS ADVICE_WORDS
 #define BROKER_SESSION 20
 #define CLIENT_ID "owsd-%s"
@@ -44,6 +45,13 @@ struct broker_ops {
 	void (*answered)(void *ctx);
 	/* Have the will put; ending: what is published at the end. False: it was not taken. */
 	bool (*will)(void *ctx, bool ending, const struct outlet *outlet);
+};
+
+/* A topic that we want to hear, as long as the connection lasts. */
+struct broker_topic {
+	char name[TOPIC_SIZE];
+	int mid;      /* of the last request for it */
+	bool refused; /* which the broker has refused */
 };
 
 enum broker_state {
@@ -83,6 +91,10 @@ struct broker {
 	int mark;     /* its number */
 	bool refused; /* a way that was tried since the last pause answered, and refused */
 	struct backoff backoff;
+	struct broker_topic topics[BROKER_TOPICS];
+	unsigned topic_count;
+	struct backoff asking; /* for those that are refused: a cluster may not be ready yet */
+	int64_t ask_ns;        /* when they are asked for again; 0: none is refused */
 	int64_t begun_ns, next_ns;
 	int64_t tend_ns;                   /* when broker_tick() is due, once there is a client */
 	unsigned known;                    /* ways that it was connected by, as bits */
@@ -124,8 +136,15 @@ int client_sure_qos(const struct broker *b);
 /* Publish an answer to a message, once; one that the broker does not take now is lost. */
 void client_answer(struct broker *b, const char *topic, const char *text, size_t len,
                    const struct broker_message *message);
-/* A refusal is logged when it comes. What we publish there ourselves does not come, by MQTT 5. */
+/*
+ * What the broker refuses is logged, and asked for again after a pause, until the connection ends.
+ * What we publish there ourselves does not come, by MQTT 5.
+ */
 void client_subscribe(struct broker *b, const char *topic);
+/* Those that are refused, when it is time. */
+void client_subscribe_again(struct broker *b, int64_t now_ns);
+/* A new connection has no subscription. */
+void client_forget_topics(struct broker *b);
 /*
  * The same for several at once, QoS 0, or their end. Only a refusal of the first is logged: whether
  * there is something at the others nobody knows.
