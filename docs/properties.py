@@ -7,6 +7,7 @@
   (tests/unit/data/compared.tsv, which tests/system/compare.py makes and checks),
 - what became of the values that both wrote to it
   (tests/unit/data/written.tsv, which tests/system/compare_writes.py makes and checks),
+- what a user notices and no comparison shows (tests/unit/data/notes.tsv, made by hand),
 - what the owsd of this build states of it, and offers of a slave of each driver of the kernel's.
 """
 
@@ -26,7 +27,7 @@ import served  # noqa: E402
 
 WIDTH = 100
 COUNTED = ("all", "same", "differs", "cannot be had", "not compared", "write-only")
-PUT = ("same", "differs", "not written")
+PUT = ("writable", "written same", "written differs", "written not written")
 REFUSED = "cannot be had: "
 WRITE_ONLY = "can only be written"
 SCRATCHPAD = "50 05 4b 46 7f ff 0c 10 1c : crc=1c YES\n50 05 4b 46 7f ff 0c 10 1c t=85000\n"
@@ -69,8 +70,8 @@ written by owserver to one chip and by owsd to another, and read back past the c
 Type, access, size, array and life, as `/structure` has them, are those of owserver for {stated} of
 the {all}. The others are limits of the EDS0080 to EDS0085 and two names, see family 7E.
 
-What a user notices of all that is in [native.md](native.md#not-like-owserver). The native links (a DS2482, `w1:netlink`, the simulator)
-have all of this alike, because the same code is above them. Target `w1` has what the kernel's
+The native links (a DS2482, `w1:netlink`, the simulator) have all of this alike, because the same code
+is above them. Target `w1` has what the kernel's
 drivers give: column "driver" counts the listed properties that a driver's attributes stand for, "not
 given" those that they do not. Of a chip that has no driver there (`rw`), one write and one read have to do:
 see [w1.md](w1.md#what-there-is). A driver's readings were not compared here.
@@ -133,21 +134,29 @@ def devices_of(server):
     return re.findall(r"(?<=/)[0-9A-F]{2}\.[0-9A-F]{12}(?=[,\0]|$)", frame.data.decode())
 
 
-def names(found):
-    """Many names as a text: those that differ in a number are one."""
+def together(found, number):
+    """Names that differ in one number, or in the letter of a type, as one."""
     groups = collections.OrderedDict()
     for name in found:
-        match = re.fullmatch(r"(.*?)(\d+)", name)
-        groups.setdefault(match[1] if match else name, []).append(match and match[2])
-    out = []
-    for stem, numbers in groups.items():
-        alike = len(numbers) > 2 and None not in numbers
-        many = [f"{stem}{min(numbers, key=int)}..{max(numbers, key=int)}"] if alike and \
-            sorted(map(int, numbers)) == list(range(int(min(numbers, key=int)),
-                                                    int(max(numbers, key=int)) + 1)) else \
-            [stem + (n or "") for n in numbers]
-        out += many
-    return ", ".join(f"`{n.strip()}`" for n in out)
+        match = re.fullmatch(number, name)
+        groups.setdefault((match[1], match[3]) if match else name, []).append(match[2] if match else None)
+    for key, parts in groups.items():
+        if isinstance(key, str):
+            yield key
+        elif len(parts) < 3:
+            yield from (key[0] + part + key[1] for part in parts)
+        elif [p for p in parts if not p.isdecimal()] or \
+                list(map(int, parts)) != list(range(int(parts[0]), int(parts[0]) + len(parts))):
+            yield f"{key[0]}{{{','.join(parts)}}}{key[1]}"
+        else:
+            yield f"{key[0]}{parts[0]}..{parts[-1]}{key[1]}"
+
+
+def names(found):
+    """Many names as a text: those that differ in a number are one."""
+    for number in (r"(.*?)(\d+)()", r"(subkey|EDS00)(\d+)(/.*)", r"(type)([A-Z])(/.*)"):
+        found = list(together(found, number))
+    return ", ".join(f"`{n.strip()}`" for n in found)
 
 
 def item(text):
@@ -161,26 +170,30 @@ def verdict_of(record):
         "write-only" if reason == WRITE_ONLY else verdict
 
 
-def section(family, chip, records):
-    """What is not the same of a family, by reasons."""
+def by_reason(records):
+    """{(how, verdict, reason): names} of one family: what is not the same, read, then written."""
     by = collections.OrderedDict()
-    for row, record in records:
-        if verdict_of(record) not in ("same", "write-only"):
-            by.setdefault((verdict_of(record), record[2].removeprefix(REFUSED)), []).append(row.property)
+    for how, name, verdict, reason in records:
+        if verdict not in ("same", "write-only"):
+            by.setdefault((how, verdict, reason), []).append(name)
+    return by
+
+
+def section(family, chip, by, marks, missing):
+    """A family: what is not the same of it, by reasons, and what a driver of the kernel's does not give."""
     lines = []
-    for (verdict, reason), found in by.items():
-        lines.append(item(f"{names(found)}: {verdict}; {reason}"))
+    for (how, verdict, reason), found in by.items():
+        mark = marks.get(reason)
+        said = f"{how}{verdict} ({mark})" if mark else f"{how}{verdict}; {reason}"
+        lines.append(item(f"{names(found)}: {said}"))
+    lines += [item(f"Not of the kernel's driver: {names(missing)}")] if missing else []
     return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
 
 
-def written_section(family, chip, records):
-    """What was written of a family and is not the same, by reasons."""
-    by = collections.OrderedDict()
-    for name, line in records:
-        if line.verdict != "same":
-            by.setdefault((line.verdict, line.reason), []).append(name)
-    lines = [item(f"{names(found)}: {verdict}; {reason}") for (verdict, reason), found in by.items()]
-    return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
+def notes():
+    """[(families, note)]"""
+    with open(compare.DATA / "notes.tsv", encoding="utf-8") as file:
+        return [line.rstrip("\n").split("\t") for line in list(file)[1:]]
 
 
 def others(written):
@@ -198,10 +211,6 @@ def row_of(cells):
     return "| " + " | ".join(str(c or "") for c in cells) + " |"
 
 
-def kernel_section(family, missing):
-    return item(f"**{family}**: {names(missing)}") if missing else None
-
-
 def chips():
     """{family: its usual chip}, of the one list of them."""
     text = (SOURCE / "hal/chips/families.h").read_text()
@@ -214,52 +223,52 @@ def page():
     stated, given, chip = build_states(rows), kernel_gives(), chips()
     families = sorted({r.family for r in rows})
     sums = collections.Counter()
-    table, table_written, below, below_written, kernel = [], [], [], [], []
+    table, reasons, lacks = [], {}, {}
     for family in families:
         mine = [(r, recorded[r.family, r.property]) for r in rows if r.family == family]
         count = collections.Counter(verdict_of(record) for _, record in mine)
-        count["all"] = len(mine)
         puts = [(name, line) for (of, name), line in written.items() if of == family]
+        count.update({"all": len(mine), "writable": len(puts)})
         count.update("written " + line.verdict for _, line in puts)
         listed = [r.property for r, _ in mine if r.visibility == "always"]
-        missing = [p for p in listed if p not in given[family]] if family in given else []
+        lacks[family] = [p for p in listed if p not in given[family]] if family in given else []
         if family in given:
-            count["given"], count["missing"] = len(listed) - len(missing), len(missing)
-            kernel.append(kernel_section(family, missing))
+            count["given"], count["missing"] = len(listed) - len(lacks[family]), len(lacks[family])
         sums.update(count)
-        cells = [family, chip.get(family, "")] + [
-            str(count[k] or "") for k in COUNTED]
-        cells += [str(count["given"]), str(count["missing"] or "")] if family in given else ["`rw`", ""]
-        table.append("| " + " | ".join(cells) + " |")
-        if puts:
-            table_written.append(row_of([family, chip.get(family, ""), len(puts)] +
-                                        [count["written " + verdict] for verdict in PUT]))
-        below += section(family, chip.get(family, ""), mine)
-        below_written += written_section(family, chip.get(family, ""), puts)
-    all_written = row_of(["all", "", len(written)] + [sums["written " + v] for v in PUT])
-    total = [str(sums[k]) for k in (*COUNTED, "given", "missing")]
+        table.append(row_of([family, chip.get(family, "")] + [count[k] for k in COUNTED + PUT] +
+                            ([count["given"], count["missing"]] if family in given else ["`rw`", ""])))
+        reasons[family] = by_reason(
+            [("", r.property, verdict_of(record), record[2].removeprefix(REFUSED)) for r, record in mine] +
+            [("written " if line.verdict == "differs" else "", name, line.verdict, line.reason)
+             for name, line in puts])
+    shared = collections.Counter(reason for by in reasons.values() for reason in {r for _, _, r in by})
+    common = [reason for reason, n in shared.items() if n > 2]
+    marks = {reason: chr(ord("a") + n) for n, reason in enumerate(common)}
+    below = [line for family in families for line in
+             section(family, chip.get(family, ""), reasons[family], marks, lacks[family])]
     intro = INTRO.format(all=sums["all"], writable=len(written), families=len(families), stated=len(stated),
                          clock=compare.CLOCK_S, short=compare.SHORT,
                          volt=compare.SUMS["volthours"], amp=compare.SUMS["amphours"])
     return "\n".join([
         "\n\n".join(p if p.startswith("#") else fill(p) for p in intro.strip().split("\n\n")), "",
-        "| | chip | all | same | differs | cannot be had | not compared | write-only | driver "
-        "| not given |",
-        "|---|---|" + "--:|" * 8, *table,
-        f"| all | | {' | '.join(total)} |", "",
-        "Of those that can be written:", "",
-        "| | chip | can be written | written same | differs | not written |",
-        "|---|---|" + "--:|" * 4, *table_written, all_written, "",
-        "## What is not read the same, and why", "", *below,
-        "## What is not written the same, and why", "", *below_written,
+        "## What a user notices", "",
+        fill("What no comparison shows. The reasons of each property are further [below](#family-by-family)."),
+        "", *[item(f"**{of}**: {note}") for of, note in notes()], "",
+        "## How many", "",
+        "| | chip | all | same | differs | cannot be had | not compared | write-only | can be written "
+        "| same | differs | not written | driver | not given |",
+        "|---|---|" + "--:|" * 12, *table,
+        row_of(["all", ""] + [sums[k] for k in (*COUNTED, *PUT, "given", "missing")]), "",
+        "## Family by family", "",
+        fill("What is not read, or not written, the same, and why. A letter stands for a reason that more "
+             "than two families have. Target `w1` does not list what the driver of the kernel's does not "
+             "give; over `w1:netlink` it is there."), "",
+        *[item(f"({mark}) {reason}") for reason, mark in marks.items()], "",
+        *below,
         "## What is no legal value", "",
         fill("Only what differs. owsd refuses what it cannot take as it is: a number that means "
              "something else, cut or wrapped, would be a false value in the chip."), "",
-        *others(written), "",
-        "## What the kernel's drivers do not give", "",
-        fill("Of a slave that such a driver has, target `w1` does not list these. Over `w1:netlink` "
-             "they are there."), "",
-        *[k for k in kernel if k]]) + "\n"
+        *others(written)]) + "\n"
 
 
 def fill(text):

@@ -193,7 +193,7 @@ def test_directories(scene):
         "alert_high", "alert_low", "memory", "power", "temphigh", "templow", "tempoffset", "tempres")])
     for path in ("/text", "/json/uncached", "/uncached/text"):
         pair.entries(path, drop=("/signals",))
-    # What docs/native.md says is not there
+    # What docs/properties.md says is not there
     pair.entries("/statistics", drop=("/return_codes", "/cache", "/directory", "/threads"))
     pair.entries("/simultaneous", drop=("/iblss",))
     for path in (T, T + "/errata", "/settings/units"):

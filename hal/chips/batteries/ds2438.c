@@ -9,6 +9,11 @@
  * What is read is read twice, as the number of another page may have reached the chip; it may be
  * the same one twice. The measurements are in page 0: there the configuration must be the known
  * one.
+ *
+ * A page is written, read back, copied, recalled and compared. Before that the three scratchpads
+ * are recalled that one wrong bit in the number of the page could copy. A program that plays a
+ * DS2438 has neither recall nor busy slots: a search for it and two looks that are the same have to
+ * do.
  */
 #include <errno.h>
 #include <string.h>

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* What a DS2438 measures (data sheet 19-5099), and the proof that a zero is one. */
+/*
+ * What a DS2438 measures (data sheet 19-5099), and the proof that a zero is one.
+ *
+ * Convert T and Convert V are proved by the busy slots. A VDD of 0 fails, because the chip runs on
+ * it. Any other 0 may be what a restart left: it is measured again between a mark in the scratchpad
+ * of page 3, which a restart destroys, and a look at the mark.
+ */
 #include <errno.h>
 
 #include "hal/chips/batteries/ds2438_measure.h"

@@ -2,6 +2,11 @@
 /*
  * What the battery gauges with 256 addresses have in common: areas, and ways that no field has.
  * None of their bytes has a checksum; words come high byte first. The tables are in gauges.c.
+ *
+ * So what is read is looked at three times, with a recall each, and what is written is read back;
+ * of what goes on counting two counts are allowed. Start Charge, Stop Charge and Refresh of a
+ * DS2770 show in its status. A bit turned over in the address of a write reaches another byte, at
+ * once: nothing shows that.
  */
 #pragma once
 

@@ -4,6 +4,8 @@
  * its answer behind it. There is no data sheet: commands and scales are those of OWFS. Both stay
  * until the next ones, so they are cleared before a command is given. Nothing shows whether the
  * station took a setting: none is written.
+ *
+ * An answer has a sum.
  */
 #include <errno.h>
 #include <string.h>

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The bridges from 1-Wire to I2C. */
+/*
+ * The bridges from 1-Wire to I2C.
+ *
+ * A packet that is lost leaves ones, and perhaps the sensor's last result. Of a DS28E17 the 0
+ * before the answer, and its status, prove it (docs/bridges.md); of a DS28E18 the CRC16 behind each
+ * packet and of each answer, and what stands before the bytes in its sequencer.
+ */
 #include <errno.h>
 #include <string.h>
 

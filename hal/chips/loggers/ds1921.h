@@ -2,6 +2,10 @@
 /*
  * DS1921G, L, H and Z (their data sheets): areas, registers, and what is read of them. All pages
  * have a CRC16.
+ *
+ * Convert Temperature is proved by the counter of all samples, before and behind it; a copy by the
+ * flag AA in E/S, after the scratchpad was read back with its CRC16; Clear Memory by MEMCLR of the
+ * status.
  */
 #pragma once
 

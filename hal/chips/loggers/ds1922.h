@@ -3,6 +3,10 @@
  * DS1922L, DS1922T, DS1923 (their data sheets) and their bare chip DS2422: areas, registers, and
  * what is read of them. Nearly each command has a password; that of a chip without one is ignored,
  * and owsd sends ones.
+ *
+ * Forced Conversion is proved by the counter of all samples, before and behind it; a copy by the
+ * flag AA in E/S, after the scratchpad was read back with its CRC16; Clear Memory, Start and Stop
+ * Mission by MEMCLR and MIP of the status.
  */
 #pragma once
 

@@ -3,6 +3,11 @@
  * DS2404 and DS1994 (data sheet 020998): 4 kbit of RAM with a battery, a clock, an interval timer
  * and a counter of cycles, and an alarm for each. Nothing has a checksum. To read the status
  * register clears its flags: they are kept with the device until they are asked for.
+ *
+ * Each is read until three in a row are the same. A clock that was written may have gone on for two
+ * seconds. Ahead of the status register, as only one read of it shows the flags, comes a
+ * conditional search, and the counters if that found nothing: of two alarms that are enabled, one
+ * may be lost or added if a bit is turned over in just that read.
  */
 #include <errno.h>
 #include <string.h>

@@ -2,6 +2,10 @@
 /*
  * DS2415 or DS1904 (data sheet, "1-Wire Time Chip") and DS2417, which has an interrupt pin besides:
  * a counter of seconds and a control byte, without a checksum.
+ *
+ * It is read until three in a row are the same; a clock that was written may have gone on for two
+ * seconds. All eight bits of Read Clock (66h) turned over are Write Clock (99h): then the chip
+ * takes ones for its control byte and its time.
  */
 #include <errno.h>
 

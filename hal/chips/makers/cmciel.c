@@ -3,6 +3,8 @@
  * Sensors of CMC Industrial Electronics: rotation mRS001, alternating current mCM001, four
  * fail-safe contacts mDI001, analog input mAM001. Each has measured a word of 16 bits. No data
  * sheet could be had: the command is that of OWFS's driver.
+ *
+ * The word has a CRC8, and in an mDI001 bits that say what it is.
  */
 #include <errno.h>
 

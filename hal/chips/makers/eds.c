@@ -3,6 +3,10 @@
  * Sensors of Embedded Data Systems: which one it is, its pages, its relay and LED, its alarms and
  * counters. The memory maps of its manuals could not be had: commands, addresses and units are
  * those of OWFS's driver and manual page.
+ *
+ * A page has a CRC16, and so has a write, whose scratchpad is read back before the copy, and whose
+ * page after it. Counters and latches of an EDS0090 are looked at before and after their reset.
+ * Nothing shows Clear Alarms: it is sent three times, and reads a page of the sensor then.
  */
 #include <errno.h>
 #include <stdio.h>

@@ -6,6 +6,9 @@
  * checksum, which are read AREA_LOOKS times. What a command does is proved by the device's own
  * answer, for it checks the command. No data sheet could be had: the commands are those of OWFS's
  * driver.
+ *
+ * The activations of switches, which a read clears, have nothing but that answer: a bit turned over
+ * in them is not seen.
  */
 #include <ctype.h>
 #include <errno.h>

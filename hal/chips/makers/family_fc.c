@@ -7,6 +7,10 @@
  * No data sheet could be had: commands and registers are those of OWFS's driver. Registers are read
  * and written, and the EEPROM is read. What no register shows is refused: the programs that run in
  * a 0911 (I2C, card, texts), raw commands, what writes EEPROM and firmware.
+ *
+ * Clocks may have gone on for two seconds when they are read back, and a sector of the card is read
+ * twice. Nothing shows a confirmation of registers that change by themselves (counters, latches),
+ * of those that start something (`init`), of texts, and of `command`.
  */
 #include <errno.h>
 #include <stdio.h>

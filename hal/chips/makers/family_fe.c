@@ -6,6 +6,8 @@
  * That driver takes a page if the CRC16 of the page alone does not fit, and refuses it if it does.
  * So what a real one computes is not known. The memory chips of 1-Wire start their CRC16 with the
  * command and the address. A page is good with either of both checksums, and refused with neither.
+ *
+ * The page, which has the CRC16, has a busy flag, too: it proves a conversion.
  */
 #include <errno.h>
 #include <stdio.h>

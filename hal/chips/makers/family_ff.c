@@ -4,6 +4,10 @@
  * could not be had: the commands are those of OWFS's driver. All that is read goes by way of a
  * scratchpad without a checksum. Nothing shows that a command to the display was taken: all of them
  * are sent twice, which changes nothing.
+ *
+ * A command that fills the scratchpad and is lost leaves it as it was: so it is given in two
+ * rounds, ahead of which the scratchpad is filled with different bytes. The counters, which a read
+ * clears, have ones there before.
  */
 #include <errno.h>
 #include <string.h>

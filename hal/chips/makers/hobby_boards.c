@@ -5,6 +5,11 @@
  * board it is, and so which properties it has. No manual could be had: the commands are those of
  * OWFS's driver, the ones that write too, which it does not send to UVI meter, barometer,
  * hygrometer and thermometers; the offset of the UVI meter is signed.
+ *
+ * With one bit turned over, the command of a value is the one that writes the setting, and what it
+ * writes are the ones of the read slots. So each is looked at three times, and a setting of all
+ * ones is refused, and so is a UVI whose offset is all ones. A setting is read back; a bit turned
+ * over in its command reaches another setting.
  */
 #include <errno.h>
 #include <stdio.h>

@@ -3,6 +3,9 @@
  * 4 kbit of RAM with a battery, and counters that belong to its pages: DS1963L (data sheet 021704)
  * and DS1963S ("SHA iButton", whose secrets are not written here) count their writes, DS2423
  * (19-5140) what happens at two pins as well.
+ *
+ * Read Memory + Counter has a CRC16. A scratchpad that Erase Scratchpad (DS1963S) did not reach
+ * takes nothing: it is read back.
  */
 #include <errno.h>
 #include <string.h>

@@ -4,6 +4,8 @@
  * (data sheets, "16kbit Add-Only Memory", "64kbit Add-Only Memory"): pages of 32 bytes, and status
  * bytes in eleven pages. It is programmed with pulses of 12 V, which no adapter here gives: the
  * areas have no row.
+ *
+ * Extended Read Memory and Read Status have a CRC16.
  */
 #include <errno.h>
 #include <string.h>

@@ -2,6 +2,8 @@
 /*
  * DS1991 (data sheet 012207) and DS1425: three subkeys, each with an identifier that everybody may
  * read, and 48 bytes behind a password. Passwords are neither used nor set here.
+ *
+ * A subkey is read until three in a row are the same.
  */
 #include "hal/chips/family.h"
 #include "hal/chips/steady.h"

@@ -2,6 +2,10 @@
 /*
  * DS1977 (data sheet, "Password-Protected 32KB EEPROM iButton"). Passwords are neither used nor set
  * here: zeros are sent in their place, which the chip takes while none is switched on.
+ *
+ * Read Memory with Password has a CRC16. The chip sends what it reads behind a strong pull-up of 5
+ * ms, in the same transaction: the bus waits for it, and nothing comes in between. Without a strong
+ * pull-up its reads may fail.
  */
 #include <errno.h>
 #include <string.h>

@@ -7,6 +7,10 @@
  * - DS2430A (19-5235): 32 bytes of EEPROM, and 8 that can be written once
  * - DS2502 (19-5076), DS1982U: EPROM, programmed with 12 V, which no adapter here gives: no row
  * - DS2401, DS1990A, DS1420 (19-4890): an id and nothing else
+ *
+ * Where a reading has no CRC8 (DS2502) or CRC16 (DS28EC20) there are three looks, and three to six
+ * more between two searches for the chip if all is ones or zeros. A scratchpad is read back before
+ * its copy, and the memory after it.
  */
 #include "hal/chips/family.h"
 

@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The registers of a DS2408 (data sheet 19-5702), and its eight outputs. */
+/*
+ * The registers of a DS2408 (data sheet 19-5702), and its eight outputs.
+ *
+ * Reset Activity Latches and Channel Access Write are confirmed (AAh); outputs and the settings of
+ * the conditional search are read back. A disturbed command can clear the power-on flag: the bus
+ * reports that as a restart.
+ */
 #include <errno.h>
 #include <string.h>
 

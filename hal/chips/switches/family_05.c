@@ -3,6 +3,9 @@
  * DS2405 (data sheet 19-5140): each Match ROM turns its switch over, so it is never matched to be
  * read: the conditional search finds it while it conducts, and after a search that ended at it the
  * next slots give its pin.
+ *
+ * A conditional search that is lost says "does not conduct": so there are three looks, and then a
+ * search for the chip. The looks show a Match ROM that was lost, too.
  */
 #include <errno.h>
 

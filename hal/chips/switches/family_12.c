@@ -1,5 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2406 and DS2407 (data sheet 19-6076): one or two switches, and 1 kbit of EPROM. */
+/*
+ * DS2406 and DS2407 (data sheet 19-6076): one or two switches, and 1 kbit of EPROM.
+ *
+ * Channel Access and Write Status have a CRC16; what is written is read back, and a write that
+ * failed is made again from what stood before it. A disturbed command can clear the latches: then
+ * they are lost.
+ */
 #include <errno.h>
 
 #include "hal/chips/family.h"

@@ -2,6 +2,9 @@
 /*
  * DS28E04-100 (data sheet 19-6134): 4 kbit of EEPROM, two switches with activity latches. Its
  * registers are those of a DS2408, without a checksum.
+ *
+ * Reset Activity Latches and PIO Access Write are confirmed (AAh); outputs and registers are read
+ * back.
  */
 #include <errno.h>
 

@@ -3,6 +3,9 @@
  * DS2409 (data sheet 102199, "MicroLAN Coupler"): its status and its control output. What is behind
  * its branches the bus reaches by itself (hal/wire/coupler.h), and for that it clears the event
  * flags: it keeps what it saw of them.
+ *
+ * Smart-On and All Lines Off are confirmed, and behind Smart-On only the chips of that branch
+ * listen. The status comes twice, and is read three times; what is written is read back.
  */
 #include <errno.h>
 

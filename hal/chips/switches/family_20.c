@@ -1,5 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* DS2450 (data sheet 19-5125): four A/D converters whose pins are switches too. */
+/*
+ * DS2450 (data sheet 19-5125): four A/D converters whose pins are switches too.
+ *
+ * Convert has a CRC16 behind the command. So has Write Memory, with an echo; one that is lost may
+ * change another byte: all registers are looked at before, and put right after an error. A restart
+ * leaves old results: the settings are read behind the results, in the same transaction, and a
+ * power-on flag, another range or another resolution has the reading made again. A flag that has
+ * come by itself is reported as a restart, once; to write a setting or to convert clears all four.
+ */
 #include <errno.h>
 #include <string.h>
 

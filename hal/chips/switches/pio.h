@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The two open-drain switches of DS2413 (data sheet 19-5703) and DS28EA00 (19-5615). */
+/*
+ * The two open-drain switches of DS2413 (data sheet 19-5703) and DS28EA00 (19-5615).
+ *
+ * A byte that is read is good if its halves are complements, and if two bytes are the same. A write
+ * is confirmed, and read back.
+ */
 #pragma once
 
 #include "hal/chips/property.h"

@@ -12,6 +12,8 @@
  * after a restart is not documented either: a temperature of 0 is good only near another reading.
  * The same holds for a MAX31850 whose thermocouple and cold junction are both 0: so it restarts,
  * and nothing can be written to it as a mark.
+ *
+ * A disturbed address can make a MAX31826 copy its scratchpad to another page: nothing shows that.
  */
 #include <errno.h>
 #include <stdlib.h>

@@ -8,6 +8,9 @@
  * what was read is no longer there, and a restart leaves none. The count stands at 07h by the map
  * of the MAX31889, at 04h by a driver that quotes the MAX31888's: there the former has the place of
  * the next result. In a FIFO that was emptied before, both are 1 after one conversion.
+ *
+ * Convert T is proved by the CRC16 behind the command. Where neither count says that one result is
+ * there, the FIFO is emptied, and one conversion made.
  */
 #include <errno.h>
 

@@ -7,6 +7,12 @@
  * No data sheet says what a chip that converts does with another Convert T. It may begin anew, or
  * go on and ignore it; its slots show it busy either way. So the result counts as that of the
  * earliest conversion that it can be.
+ *
+ * Lost commands: behind Convert T eight slots are low, as the chip is busy. A result that is read
+ * before the longest time is over has to differ from the one before. With the strong pull-up no
+ * slot can show it: docs/native.md, "What a lost command leaves". Write Scratchpad is read back.
+ * Read Power Supply, which says "external" if it is lost, is asked in three looks of eight slots,
+ * six for `power`.
  */
 #pragma once
 

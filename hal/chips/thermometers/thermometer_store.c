@@ -19,6 +19,9 @@
  * Both are called until they return something else than TXN_MORE. 0; -EINVAL: the chip does not
  * take it; -EIO: it was not kept, or nothing shows what the EEPROM has. Commands: data sheets
  * 19-7487 and 19-5474.
+ *
+ * Two wrong bits make Copy Scratchpad (48h) of Convert T (44h), which begins alike: nothing shows
+ * that.
  */
 #include <errno.h>
 #include <string.h>
