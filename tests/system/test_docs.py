@@ -413,9 +413,9 @@ for _page in PAGES + MANUALS:
     globals()[f"test_{re.sub(r'[^a-z0-9]', '_', _page.name.lower())}_is_true"] = case_of(_page)
 
 
-def test_the_tests_that_security_md_names_are_there(_scene):
+def test_the_tests_of_each_promise_are_there(_scene):
     named = 0
-    for row in re.split(r"\n(?=[-|\n])", (SOURCE / "SECURITY.md").read_text()):
+    for row in re.split(r"\n(?=[-|\n])", (SOURCE / "tests/promises.md").read_text()):
         files, text = [], ""
         for word in re.findall(r"`(tests/[^`]+|test_\w+)`", row):
             if word.startswith("tests/"):
