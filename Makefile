@@ -15,6 +15,7 @@
 #                                 need); TESTS='test_run.py test_shm.py' these system tests alone
 #   make unit                     unit tests alone, with each place of each visit of a chip
 #   make system                   all system tests; TESTS=test_reload.py some
+#   make helpers                  what tests are made with, in a sentence each
 #   make lint                     the form of all files; make format mends what a program can of it
 #   make check                    all suites of tests/suites, in forty minutes; goes on where it was
 #                                 broken off. SUITES='kernel gpio' some, AGAIN=1 all of them again
@@ -313,7 +314,7 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
 .PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
         deb repository test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page check check-all \
-        touched mutate help FORCE
+        touched mutate helpers help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -632,6 +633,12 @@ mutate: all
 diagrams:
 	python3 docs/alarm-states.py >docs/img/alarm-states.svg.new
 	mv docs/img/alarm-states.svg.new docs/img/alarm-states.svg
+
+# --- What tests are made with: the first line of each file of it ---------------------------------
+helpers:
+	@awk 'FNR == 1 { said = 0 } !said && /^(\/\* [^S]| \* |""")/ { said = 1; \
+		gsub(/^(\/\* | \* |""")|( \*\/|""")$$/, ""); printf "%-34s %s\n", FILENAME, $$0 }' \
+		tests/unit/aid/*.h $(filter-out tests/system/test_%,$(wildcard tests/system/*.py))
 
 # --- The same properties by owserver and by owsd ----------------------------------------------
 compare: all $(SYSTEM_AIDS)
