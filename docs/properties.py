@@ -171,21 +171,21 @@ def verdict_of(record):
 
 
 def by_reason(records):
-    """{(how, verdict, reason): names} of one family: what is not the same, read, then written."""
-    by = collections.OrderedDict()
-    for how, name, verdict, reason in records:
-        if verdict not in ("same", "write-only"):
-            by.setdefault((how, verdict, reason), []).append(name)
-    return by
+    """{(reason, names): verdicts} of one family: what is not the same, read or written."""
+    by, joined = collections.OrderedDict(), collections.OrderedDict()
+    for verdict, name, reason in records:
+        if verdict not in ("same", "written same", "write-only"):
+            by.setdefault((verdict, reason), []).append(name)
+    for (verdict, reason), found in by.items():
+        joined.setdefault((reason, tuple(found)), []).append(verdict)
+    return joined
 
 
 def section(family, chip, by, marks, missing):
     """A family: what is not the same of it, by reasons, and what a driver of the kernel's does not give."""
-    lines = []
-    for (how, verdict, reason), found in by.items():
-        mark = marks.get(reason)
-        said = f"{how}{verdict} ({mark})" if mark else f"{how}{verdict}; {reason}"
-        lines.append(item(f"{names(found)}: {said}"))
+    lines = [item(f"{names(found)}: {', '.join(verdicts)}" +
+                  (f" ({marks[reason]})" if reason in marks else f"; {reason}"))
+             for (reason, found), verdicts in by.items()]
     lines += [item(f"Not of the kernel's driver: {names(missing)}")] if missing else []
     return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
 
@@ -223,7 +223,7 @@ def page():
     stated, given, chip = build_states(rows), kernel_gives(), chips()
     families = sorted({r.family for r in rows})
     sums = collections.Counter()
-    table, reasons, lacks = [], {}, {}
+    table, alike, reasons, lacks = [], [], {}, {}
     for family in families:
         mine = [(r, recorded[r.family, r.property]) for r in rows if r.family == family]
         count = collections.Counter(verdict_of(record) for _, record in mine)
@@ -235,13 +235,16 @@ def page():
         if family in given:
             count["given"], count["missing"] = len(listed) - len(lacks[family]), len(lacks[family])
         sums.update(count)
-        table.append(row_of([family, chip.get(family, "")] + [count[k] for k in COUNTED + PUT] +
-                            ([count["given"], count["missing"]] if family in given else ["`rw`", ""])))
+        if count["all"] == count["same"] and count["writable"] == count["written same"] and not lacks[family]:
+            alike.append(f"{family} ({chip.get(family, '')})")
+        else:
+            table.append(row_of([family, chip.get(family, "")] + [count[k] for k in COUNTED + PUT] +
+                                ([count["given"], count["missing"]] if family in given else ["`rw`", ""])))
         reasons[family] = by_reason(
-            [("", r.property, verdict_of(record), record[2].removeprefix(REFUSED)) for r, record in mine] +
-            [("written " if line.verdict == "differs" else "", name, line.verdict, line.reason)
+            [(verdict_of(record), r.property, record[2].removeprefix(REFUSED)) for r, record in mine] +
+            [(line.verdict if line.verdict == "not written" else f"written {line.verdict}", name, line.reason)
              for name, line in puts])
-    shared = collections.Counter(reason for by in reasons.values() for reason in {r for _, _, r in by})
+    shared = collections.Counter(reason for by in reasons.values() for reason in {r for r, _ in by})
     common = [reason for reason, n in shared.items() if n > 2]
     marks = {reason: chr(ord("a") + n) for n, reason in enumerate(common)}
     below = [line for family in families for line in
@@ -259,6 +262,7 @@ def page():
         "| same | differs | not written | driver | not given |",
         "|---|---|" + "--:|" * 12, *table,
         row_of(["all", ""] + [sums[k] for k in (*COUNTED, *PUT, "given", "missing")]), "",
+        fill(f"All is the same, read and written, and counts in the last row alone: {', '.join(alike)}."), "",
         "## Family by family", "",
         fill("What is not read, or not written, the same, and why. A letter stands for a reason that more "
              "than two families have. Target `w1` does not list what the driver of the kernel's does not "
