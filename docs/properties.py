@@ -244,7 +244,7 @@ def page():
             [(verdict_of(record), r.property, record[2].removeprefix(REFUSED)) for r, record in mine] +
             [(line.verdict if line.verdict == "not written" else f"written {line.verdict}", name, line.reason)
              for name, line in puts])
-    shared = collections.Counter(reason for by in reasons.values() for reason in {r for r, _ in by})
+    shared = collections.Counter(reason for by in reasons.values() for reason in dict.fromkeys(r for r, _ in by))
     common = [reason for reason, n in shared.items() if n > 2]
     marks = {reason: chr(ord("a") + n) for n, reason in enumerate(common)}
     below = [line for family in families for line in
