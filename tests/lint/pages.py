@@ -7,10 +7,9 @@ import re
 # In 1000 words of prose: words that stand for others, and semicolons
 MOST = 100, 16
 # Pages that have more. These numbers only fall; who rewrites a page takes its row out
-MORE = {"docs/bridges.md": (109, 16), "docs/doctor.md": (100, 19), "docs/extending.md": (113, 16),
-        "docs/first-face.md": (108, 16), "docs/history.md": (116, 16), "docs/install.md": (104, 16),
-        "docs/mqtt.md": (111, 16), "docs/repository.md": (120, 16),
-        "docs/troubleshooting.md": (100, 21), "NEWS.md": (100, 20)}
+MORE = {"docs/bridges.md": (109, 16), "docs/doctor.md": (100, 19), "docs/first-face.md": (108, 16),
+        "docs/history.md": (116, 16), "docs/install.md": (104, 16), "docs/mqtt.md": (111, 16),
+        "docs/repository.md": (120, 16), "docs/troubleshooting.md": (100, 21), "NEWS.md": (100, 20)}
 MADE = {"docs/properties.md"}  # by a program, of data with a grammar of their own
 FEW = 200  # words: a page with fewer says nothing of its style
 STAND_INS = set("that those this these which it its who whom what one ones they them their such so there "
