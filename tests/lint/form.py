@@ -96,6 +96,22 @@ def check_no_line_ends_with_a_blank_and_each_file_with_a_line(tree):
             yield file, text.count("\n"), "the file has to end with one line end; run make format"
 
 
+# --- Pages ------------------------------------------------------------------------------------------
+
+def check_each_row_of_a_page_belongs_to_a_table_and_no_item_is_empty(tree):
+    """A row alone renders as a paragraph of bars; empty items were a table once."""
+    for file in tree.ending(".md"):
+        lines, code = ["", *tree.text(file).split("\n"), ""], False
+        for n, line in enumerate(lines[:-1]):
+            code ^= line.lstrip().startswith("```")
+            if code:
+                continue
+            if line.startswith("|") and lines[n - 1][:1] != "|" and not re.fullmatch(r"\|[-:| ]+", lines[n + 1]):
+                yield file, n, "a row without a table; put the head or the rows before it there"
+            if re.fullmatch(r" *[-*] *", line):
+                yield file, n, "an empty item; make a table of the list"
+
+
 # --- Secrets ----------------------------------------------------------------------------------------
 
 def check_no_credential_is_read_where_another_user_than_root_makes_files(tree):
