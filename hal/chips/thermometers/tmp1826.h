@@ -4,15 +4,16 @@
  * writes to such a chip but Convert T, and what a user writes. They cannot be told from each other;
  * both are "TMP1826".
  *
- * No whole data sheet was at hand, but the maker's pages of it, and published drivers. They disagree
- * on whether a CRC8 follows each block of the memory: a block is read until three looks are the
- * same, in either case. It comes after a pause within the transaction, so a link that splits refuses
- * it. The chip shows no busy slots: the flag of a new result is cleared, and has to be seen again.
- * Copy Scratchpad-1 keeps limits and offset over a loss of power, and nothing shows whether it
- * succeeded; a block of the memory is read back. To read the status clears its alerts: they are kept
- * until 0 is written, over an absence and a restart of the chip, too; a read that is disturbed loses
- * one whose cause has passed. Of the pins the commands alone could be had (F5h, A5h): they, the
- * resistor address, the TMP1827's SHA-256 and the modes that convert by themselves are not served.
+ * No whole data sheet was at hand, but the maker's pages of it, and published drivers. They
+ * disagree on whether a CRC8 follows each block of the memory: a block is read until three looks
+ * are the same, in either case. It comes after a pause within the transaction, so a link that
+ * splits refuses it. The chip shows no busy slots: the flag of a new result is cleared, and has to
+ * be seen again. Copy Scratchpad-1 keeps limits and offset over a loss of power, and nothing shows
+ * whether it succeeded; a block of the memory is read back. To read the status clears its alerts:
+ * they are kept until 0 is written, over an absence and a restart of the chip, too; a read that is
+ * disturbed loses one whose cause has passed. Of the pins the commands alone could be had (F5h,
+ * A5h): they, the resistor address, the TMP1827's SHA-256 and the modes that convert by themselves
+ * are not served.
  */
 #pragma once
 
