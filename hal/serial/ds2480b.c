@@ -7,7 +7,8 @@
  * that takes longer, the reset (1.1 ms), is followed by one that takes nothing. A quicker line
  * would need an answer before each byte, which costs more than it gains: a USB adapter holds
  * answers back for a millisecond and more. Each byte of data comes back as the wire had it, so
- * whatever is lost or added on the way shows.
+ * whatever is lost or added on the way shows. A search is two round trips for each device, by the
+ * accelerator. Before a strong pull-up the chip is asked whether it still has its settings.
  */
 #include <errno.h>
 #include <stdio.h>

@@ -3,7 +3,8 @@
  * A passive adapter (DS9097) as a link: its diode and resistor join the two lines of the port to
  * the wire, so each byte that is sent is a pulse on the wire, and comes back as the wire had it
  * (Maxim application note 214). At 9600 baud F0 is a reset; at 115200 FF is a slot that writes 1 or
- * reads, and 00 one that writes 0.
+ * reads, and 00 one that writes 0. What comes back shows the pulse itself, or the port has another
+ * speed, or there is no adapter. A search is a round trip for each bit.
  */
 #include <errno.h>
 #include <stdio.h>

@@ -2,11 +2,15 @@
 /*
  * The DS2490 (DS9490R) as a link; data sheet Maxim 19-4993.
  *
- * A command is a control transfer; its bytes go by one bulk endpoint, and come back as the wire had
- * them by another; the interrupt endpoint has the state of the chip and the results of commands. A
- * result has no place of its own, so each command is waited for before the next one goes out, and
- * what is counted there has to be what was asked for. Nobody clears what an error leaves in the
- * buffers but this file: without that the answer of one transaction is taken for that of the next.
+ * A command is a control transfer; its bytes go by one bulk endpoint, and come back as the wire
+ * had them by another; the interrupt endpoint has the state of the chip and the results of
+ * commands. A result has no place of its own, so each command is waited for before the next one
+ * goes out, and what is counted there has to be what was asked for. Nobody clears what an error
+ * leaves in the buffers but this file: without that the answer of one transaction is taken for
+ * that of the next. So after any error the chip is halted, its three buffers are flushed, and it
+ * has to be idle; where that does not help, and where the chip says that it lost a command (EP0F),
+ * it is reset. 64 bytes go out at once, and are compared with what comes back. The search is the
+ * chip's macro, one id at a time, so that branches of a DS2409 are searched too.
  */
 #include <errno.h>
 #include <string.h>
