@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The words of qualities and errors: one table, src/ground/signal/words_list.h, and its copies.
 
-The page's script and docs/troubleshooting.md have what they show of it between two marks. `make
+The page's script and docs/doctor.md have what they show of it between two marks. `make
 format` writes them anew.
 """
 
@@ -10,7 +10,7 @@ import textwrap
 
 TABLE = "src/ground/signal/words_list.h"
 SCRIPT = "src/faces/web/page/words.js"
-PAGE = "docs/troubleshooting.md"
+PAGE = "docs/doctor.md"
 PUBLIC = "src/public/ows.h"
 MACROS = ("QUALITY", "ERROR", "ALARM")
 HEALTHS = {"FAILURE": "failure", "CHECK": "check function", "OFF_SPEC": "off spec"}

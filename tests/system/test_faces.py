@@ -19,7 +19,7 @@ def units(program):
 
 def test_each_face_is_where_a_person_looks_for_it(_scene):
     for program, _, package, *_ in TABLE:
-        has = [("README.md", f"`{program}(8)`"), (f"docs/{program}.8", program),
+        has = [("docs/README.md", f"[{program}(8)]({program}.8)"), (f"docs/{program}.8", program),
                ("board/debian/control", f"Package: {package}\n")]
         for file, text in has:
             assert text in (SOURCE / file).read_text(), f"{file} lacks {text}"

@@ -17,10 +17,10 @@ README = owsdtest.SOURCE / "README.md"
 
 
 def use_it():
-    """The blocks of "Use it": to install, to start, and for another terminal."""
+    """The first blocks of "Use it": to install, to start, and for another terminal."""
     text = README.read_text()
     first = text.count("\n", 0, text.index("\n## Use it")) + 2
-    last = text.count("\n", 0, text.index("\n## Documentation"))
+    last = text.count("\n", 0, text.index("\nIn a C program"))
     return [b.text for b in handbook.blocks(README) if first < b.line < last and b.language == "sh"]
 
 

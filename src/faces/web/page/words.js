@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Words for qualities, numbers, ages and times: those of libows and of docs/troubleshooting.md.
+// Words for qualities, numbers, ages and times: those of libows and of docs/doctor.md.
 
 /** code: [words, what it means, what to do] */
 const QUALITIES = new Map([
