@@ -8,11 +8,11 @@
 #define GPIO_DEVICE "gpio" /* of /gpio/17 */
 
 enum gpio_count {
-	GPIO_EDGES,        /* all that came */
-	GPIO_PULSES,       /* shorter than the time between two reads, and shown */
-	GPIO_EDGES_UNSEEN, /* between two reads, and not shown */
+	GPIO_EDGES,        /* edges that came */
+	GPIO_PULSES,       /* pulses shorter than the time between two reads, and shown */
+	GPIO_EDGES_UNSEEN, /* edges between two reads that no reading showed */
 	GPIO_REFUSED,      /* requests of lines that the kernel refused */
-	GPIO_OPENS,
+	GPIO_OPENS,        /* times that the chip was opened */
 	GPIO_COUNTS,
 };
 

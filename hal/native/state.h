@@ -20,29 +20,29 @@
 
 /* What a bus counts, and the counter's name. */
 #define NATIVE_COUNTS(X) \
-	X(RETRIES, "retries") \
-	X(BUS_RESETS, "recover_bus_reset") \
-	X(CHIP_RESETS, "recover_chip_reset") \
-	X(POWER_CYCLES, "recover_power_cycle") \
-	X(REOPENS, "recover_reopen") \
-	X(CHECKSUMS, "checksum_errors") \
-	X(SHORTS, "shorts") \
-	X(LINK_ERRORS, "link_errors") \
-	X(CONVERSIONS, "conversions") \
-	X(SEARCHES, "search_passes") \
-	X(TRANSACTIONS, "wire_transactions") \
-	X(READS, "reads") \
-	X(WRITES, "writes") \
-	X(DIRECTORIES, "directories") \
-	X(CACHE_HITS, "cache_hits") \
-	X(POWER_FAULTS, "power_faults") \
-	X(FOUND, "devices_found") \
-	X(LOST, "devices_lost") \
-	X(RESTARTED, "devices_restarted") \
-	X(WIRE_US, "wire_us") \
-	X(I2C_TRANSFERS, "i2c_transfers") \
-	X(SYSCALLS, "syscalls") \
-	X(WIRES, "wires") \
+	X(RETRIES, "retries") /* transactions made again after an error of the adapter */ \
+	X(BUS_RESETS, "recover_bus_reset")     /* resets of a wire after that */ \
+	X(CHIP_RESETS, "recover_chip_reset")   /* resets of the bridge chip */ \
+	X(POWER_CYCLES, "recover_power_cycle") /* the supply was switched off and on */ \
+	X(REOPENS, "recover_reopen")           /* adapter and chips were opened again */ \
+	X(CHECKSUMS, "checksum_errors")        /* answers with a wrong checksum */ \
+	X(SHORTS, "shorts")                    /* times that data was at ground */ \
+	X(LINK_ERRORS, "link_errors")          /* errors of the adapter or its chip */ \
+	X(CONVERSIONS, "conversions")          /* conversions of thermometers and voltages */ \
+	X(SEARCHES, "search_passes")           /* passes of the search for devices */ \
+	X(TRANSACTIONS, "wire_transactions")   /* resets of the wire with what follows */ \
+	X(READS, "reads")                      /* properties read */ \
+	X(WRITES, "writes")                    /* properties written */ \
+	X(DIRECTORIES, "directories")          /* lists of devices and properties */ \
+	X(CACHE_HITS, "cache_hits")            /* readings that needed no wire */ \
+	X(POWER_FAULTS, "power_faults")        /* readings of a sensor without power, refused */ \
+	X(FOUND, "devices_found")              /* devices that are new, or back */ \
+	X(LOST, "devices_lost")                /* devices that are gone */ \
+	X(RESTARTED, "devices_restarted")      /* devices that lost their power meanwhile */ \
+	X(WIRE_US, "wire_us")                  /* time in which the wire was busy */ \
+	X(I2C_TRANSFERS, "i2c_transfers")      /* calls of the adapter */ \
+	X(SYSCALLS, "syscalls")                /* calls of the kernel for them */ \
+	X(WIRES, "wires")                      /* wires of the target */ \
 	NATIVE_WIRE_COUNTS(X, 0) \
 	NATIVE_WIRE_COUNTS(X, 1) \
 	NATIVE_WIRE_COUNTS(X, 2) \
@@ -53,8 +53,8 @@
 	NATIVE_WIRE_COUNTS(X, 7)
 /* Of the first wires, those of a DS2482-800, each by itself. */
 #define NATIVE_WIRE_COUNTS(X, n) \
-	X(WIRE_##n##_US, "wire_" #n "_us") \
-	X(WIRE_##n##_ERRORS, "wire_" #n "_errors")
+	X(WIRE_##n##_US, "wire_" #n "_us")         /* the same of one of the first eight wires */ \
+	X(WIRE_##n##_ERRORS, "wire_" #n "_errors") /* checksums, shorts and errors of it */
 enum native_count {
 #define X(count, name) COUNT_##count,
 	NATIVE_COUNTS(X)

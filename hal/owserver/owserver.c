@@ -41,7 +41,10 @@ static_assert(BUS_TOKEN == FRAME_TOKEN_SIZE && BUS_TOKENS_MAX == FRAME_TOKENS_SE
 
 enum state { DOWN, CONNECTING, GREETING, UP };
 
-enum own_counter { RECONNECTS = TALK_COUNTERS, COUNTERS };
+enum own_counter {
+	RECONNECTS = TALK_COUNTERS, /* returns of the server */
+	COUNTERS,
+};
 
 struct owserver {
 	struct bus bus;

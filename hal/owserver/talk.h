@@ -14,16 +14,16 @@
 #include "hal/owserver/connection.h"
 
 enum talk_counter {
-	TALK_REQUESTS,
-	TALK_KEEPALIVES,
-	TALK_CONNECTIONS,
-	TALK_REFUSED,
-	TALK_STALE,
-	TALK_GARBAGE,
-	TALK_FLOODS,
-	TALK_TIMEOUTS,
-	TALK_BYTES_IN,
-	TALK_BYTES_OUT,
+	TALK_REQUESTS,    /* requests to the owserver */
+	TALK_KEEPALIVES,  /* signs of life of a server that works on a request */
+	TALK_CONNECTIONS, /* connections that were opened */
+	TALK_REFUSED,     /* answers after which the server closed, though asked to keep open */
+	TALK_STALE,       /* idle connections that the server had closed; no failure */
+	TALK_GARBAGE,     /* answers that are none */
+	TALK_FLOODS,      /* requests given up for too many signs of life */
+	TALK_TIMEOUTS,    /* requests without an answer in time */
+	TALK_BYTES_IN,    /* bytes of the server */
+	TALK_BYTES_OUT,   /* bytes to the server */
 	TALK_COUNTERS,
 };
 

@@ -10,7 +10,7 @@ import re
 
 # file: the name by which the page calls it, as in "`first.c`:" before it, or None
 Block = collections.namedtuple("Block", "page line language text file")
-MAN_LANGUAGE = {".1": "sh", ".3": "c", ".5": "rio", ".8": "sh"}
+MAN_LANGUAGE = {".1": "sh", ".3": "c", ".5": "rio", ".7": "sh", ".8": "sh"}
 FENCE = re.compile(r"^( *)```(.*)$")
 
 

@@ -462,6 +462,17 @@ def test_each_rung_of_the_recovery_is_explained_by_its_counter(_scene):
     assert len(names) >= 7 and not missing, (names, missing)
 
 
+def test_each_counter_that_owsctl_prints_has_its_words(scene):
+    page = re.sub(r"\\-", "-", (SOURCE / "docs/owsd-signals.7").read_text())
+    wire = scene.file("wire.sim", "chip DS2482-100 0x18\nDS18B20 28.551DDF030000\n")
+    ports = [f"127.0.0.1:{owsdtest.free_port()}" for _ in range(2)]
+    daemon = scene.owsd(owsdtest.rio(f"sim:{wire}, {ports[0]}", []), "-l", ports[1])
+    said = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)["counters"]
+    names = {re.sub(r"(?<=_wire_)\d+(?=_)", "N", counter["name"]) for counter in said}
+    missing = [name for name in names if f".B {name}\n" not in page]
+    assert len(names) > 80 and not missing, (len(names), missing)
+
+
 def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
     picture = scene.path / "table.svg"
     subprocess.run([sys.executable, SOURCE / "docs/live-table.py", picture], check=True, timeout=240)

@@ -102,25 +102,25 @@ struct client {
 };
 
 #define SERVE_COUNTERS(X) \
-	X(connections) /* connections accepted */ \
-	X(clients)     /* clients connected now */ \
-	X(requests) \
-	X(errors)       /* requests answered with an error */ \
-	X(kept_answers) /* reads that needed no bus */ \
-	X(bus_requests) /* requests to the engine */ \
-	X(keepalives) \
+	X(connections)    /* connections accepted */ \
+	X(clients)        /* clients connected now */ \
+	X(requests)       /* requests of clients */ \
+	X(errors)         /* requests answered with an error */ \
+	X(kept_answers)   /* reads that needed no bus */ \
+	X(bus_requests)   /* requests to the engine */ \
+	X(keepalives)     /* signs of life for clients that wait for an answer */ \
 	X(full)           /* connections that had to wait for a place */ \
-	X(not_kept)       /* closed after an answer, because others waited */ \
+	X(not_kept)       /* connections closed after an answer, because others waited */ \
 	X(refused_peers)  /* peers that are not in ListenAllow */ \
 	X(refused_writes) /* writes refused in read-only mode, by ControlAllow, or as too old */ \
 	X(came_round)     /* requests that came here before, by way of other servers */ \
 	X(evicted)        /* idle clients closed because others waited */ \
-	X(refused_errors) /* closed at once, because the kernel lacked something */ \
-	X(costly)         /* closed because each byte to them took long */ \
+	X(refused_errors) /* connections closed at once: the kernel lacked something */ \
+	X(costly)         /* clients closed, because each byte to them took long */ \
 	X(garbage)        /* frames that are no requests */ \
 	X(timeouts)       /* half requests, answers no client took, idle connections */ \
-	X(bytes_in) \
-	X(bytes_out)
+	X(bytes_in)       /* bytes of clients */ \
+	X(bytes_out)      /* bytes to clients */
 
 enum serve_counter {
 #define X(name) COUNT_##name,

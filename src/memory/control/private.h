@@ -31,15 +31,15 @@
 #define CONTROL_ASK_NS (30 * NS_PER_S)
 
 #define CONTROL_COUNTERS(X) \
-	X(connections) /* now */ \
-	X(joined) \
-	X(asked) /* for a reload, and were answered */ \
-	X(refused_rights) \
-	X(refused_limits) \
-	X(refused_protocol) /* wrong words, or none in time */ \
-	X(refused_errors)   /* owsd had no memory or descriptor; also when a connection waits */ \
-	X(hung_up) \
-	X(died) /* processes that ended while another process held their socket */
+	X(connections)      /* connections now */ \
+	X(joined)           /* programs that connected */ \
+	X(asked)            /* programs that asked for a reload, and were answered */ \
+	X(refused_rights)   /* programs whose user may not */ \
+	X(refused_limits)   /* programs refused, as there were too many of a user or of all */ \
+	X(refused_protocol) /* programs that sent wrong words, or none in time */ \
+	X(refused_errors)   /* no memory or descriptor; also while a connection waits */ \
+	X(hung_up)          /* programs that ended their connection */ \
+	X(died)             /* processes that ended while another process held their socket */
 
 enum control_counter {
 #define X(name) CONTROL_##name,
