@@ -50,35 +50,29 @@ def script_of(table, public):
 
 
 def page_of(table):
-    """Three lists: of qualities and of alarms with cause and remedy, of errors with the remedy."""
-    def entry(texts):
-        lines = []
-        for depth, text in enumerate(texts):
-            text = re.sub(r'"((?:owsctl|property)[^"]*)"', r"`\1`", text)
-            lines += textwrap.wrap(text, 99, break_on_hyphens=False, break_long_words=False,
-                                   initial_indent=["- ", "  - "][depth],
-                                   subsequent_indent=["  ", "    "][depth])
-        return lines
+    """Tables: of qualities and of alarms with cause and remedy, of healths, of errors with the remedy."""
+    def row(*cells):
+        return "| " + " | ".join(re.sub(r'"((?:owsctl|property)[^"]*)"', r"`\1`", cell) for cell in cells) + " |"
+
+    def head(*cells):
+        return ["", row(*cells), "|---" * len(cells) + "|"]
 
     out = []
-    for macro, title in (("QUALITY", None), ("ALARM", "The alarms of devices:")):
-        out += ["", title, ""] if title else []
-        out += [line for _, word, cause, remedy in rows(table, macro)
-                for line in entry([f"`{word}`: {cause}", f"Remedy: {remedy}"])]
-    out += ["", "The health of a device is the worst of its signals, in the words of NAMUR NE 107:",
-            ""]
+    for macro, first in (("QUALITY", "quality"), ("ALARM", "alarm of a device")):
+        out += head(first, "why", "what to do")
+        out += [row(f"`{word}`", cause, remedy) for _, word, cause, remedy in rows(table, macro)]
+    out += head("error", "what to do")
+    out += [row(f"`{word}`", remedy) for word, remedy in
+            reversed({word: remedy for _, word, remedy in reversed(list(rows(table, "ERROR")))}.items())]
+    out += ["", "The health of a device is the worst of its signals, in the words of NAMUR NE 107:"]
+    out += head("health", "qualities")
+    more = {"CHECK": "; what is simulated"}
     for health in dict.fromkeys(names.split(", ")[1] for names, *_ in rows(table, "QUALITY")):
-        out += entry([f"`{HEALTHS[health]}`: " + ", ".join(
-            f"`{word}`" for names, word, *_ in rows(table, "QUALITY") if names.endswith(health))])
-    out += entry(["`check function` too: what is simulated"])
-    out += entry(["`maintenance required`: all values are good, and of 1000 requests and more since owsd "
-                  "started one of a hundred failed"])
-    out += ["", "The errors:", ""]
-    errors = {}
-    for _, word, remedy in rows(table, "ERROR"):
-        errors.setdefault(word, remedy)
-    out += [line for word, remedy in errors.items() for line in entry([f"`{word}`: {remedy}"])]
-    return "\n".join(out) + "\n"
+        out.append(row(f"`{HEALTHS[health]}`", ", ".join(
+            f"`{word}`" for names, word, *_ in rows(table, "QUALITY") if names.endswith(health)) + more.get(health, "")))
+    out.append(row("`maintenance required`", "all are good, and of 1000 requests and more since owsd started one of "
+                   "a hundred failed"))
+    return "\n".join(out[1:]) + "\n"
 
 
 def copies(texts):
