@@ -65,6 +65,15 @@ def check_each_guide_ends_with_what_comes_next(tree):
                 yield page, 1, 'end it with "## Next" and two or three links'
 
 
+def check_no_guide_names_the_source(tree):
+    """Who reads a guide has packages. history.md says where the schema stands."""
+    for page in pages(tree):
+        if page.removeprefix("docs/").removesuffix(".md") in GUIDES - {"history"}:
+            for number, line in enumerate(tree.text(page).split("\n"), 1):
+                if re.search(r"`(?:tests|src|hal)/|`make (?:test|unit|bench)", line):
+                    yield page, number, "say it in tested.md, or in a page for those who change owsd"
+
+
 def mend(tree):
     if BUDGETS not in tree.files:
         return

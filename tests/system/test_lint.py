@@ -62,6 +62,7 @@ FAULTS = [
     ("tests/lint/budgets.tsv", "page\twords\tsemicolons\tstand-ins\ndocs/many.md\t9\t0\t0\n", None),
     ("docs/many.md", "It is long. " * 9, r"docs/many.md:1: 27 words, and 9 are its budget"),
     ("docs/fleet.md", "# Fleet\n", r'docs/fleet.md:1: end it with "## Next"'),
+    ("docs/web.md", "## Next\n\n- [a](a)\n- [b](b), see `src/x/a/a.c`\n", r"docs/web.md:4: say it in tested.md"),
     ("src/x/a/twice.c", f"/* {MIT} */\n{HEAD}", r"src/x/a/twice.c:1: 2 SPDX lines"),
     ("src/x/a/long.c", HEAD + "\n" * 500, r"src/x/a/long.c:500: 502 lines; split the file"),
     ("src/x/a/guard.h", f"/* {MIT} */\n#ifndef SRC_X_A_A_H\n#define SRC_X_A_A_H\nint g(void);\n#endif\n",
