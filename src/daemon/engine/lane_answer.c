@@ -2,6 +2,7 @@
 /* The end of a request that is lent to a bus: by its answer, or because its time is over. */
 #include <errno.h>
 
+#include "hal/base/time.h"
 #include "src/daemon/engine/alarm/alarm.h"
 #include "src/daemon/engine/command/read_back.h"
 #include "src/daemon/engine/completion.h"
@@ -136,6 +137,12 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer)
 		lane_unstuck(lane);
 }
 
+/* A bus that did not run either, as in a suspend, has the grace for its answer when both do. */
+static int64_t patience_ends(const struct engine *e, const struct slot *slot)
+{
+	return later_ns(slot->req.deadline_ns, e->time.gap_ns) + LANE_GRACE_NS;
+}
+
 int64_t lane_timeouts(struct lane *lane)
 {
 	int64_t next = INT64_MAX, now_ns = lane->engine->time.now_ns;
@@ -148,7 +155,7 @@ int64_t lane_timeouts(struct lane *lane)
 		return lane->lent.look_ns;
 	for (unsigned i = 0; i < lane->depth; i++) {
 		struct slot *slot = &lane->lent.slots[i];
-		int64_t end = slot->req.deadline_ns + LANE_GRACE_NS;
+		int64_t end = patience_ends(lane->engine, slot);
 		struct bus_answer answer = {.id = slot->req.id, .err = -EINPROGRESS};
 
 		if (!slot->lent)

@@ -63,6 +63,37 @@ static void test_a_step_that_is_a_little_late_is_no_gap(void)
 	TEST_ASSERT_EQUAL_INT64(s.now_ns, scene_sample(&s, 1).measured_ns);
 }
 
+/* Nobody runs for so long, and the bus has not answered when the engine runs again. */
+static struct bus_req *silent_gap(int64_t ns)
+{
+	s.bus[0].mute = true;
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].swallowed_count);
+	s.now_ns += ns;
+	scene_run(&s, 100 * SCENE_MS);
+	return s.bus[0].swallowed[0];
+}
+
+static void test_a_bus_that_did_not_run_either_was_not_silent(void)
+{
+	struct bus_req *req = silent_gap(100 * SCENE_S);
+
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	scene_answer(&s, req->id, 0, "        22.5", req);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_DOUBLE(22.5, scene_number(&s, 1));
+	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "given_up"));
+}
+
+static void test_one_that_stays_silent_after_it_is(void)
+{
+	silent_gap(100 * SCENE_S);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "given_up"));
+}
+
 /* A chip that holds what it converted, and a cache that keeps it. */
 static void test_a_conversion_is_as_old_as_its_command(void)
 {
@@ -108,6 +139,8 @@ int main(void)
 	RUN_TEST(test_an_answer_that_was_on_its_way_is_as_old_as_its_request);
 	RUN_TEST(test_the_next_value_is_of_now);
 	RUN_TEST(test_a_step_that_is_a_little_late_is_no_gap);
+	RUN_TEST(test_a_bus_that_did_not_run_either_was_not_silent);
+	RUN_TEST(test_one_that_stays_silent_after_it_is);
 	RUN_TEST(test_a_conversion_is_as_old_as_its_command);
 	return UNITY_END();
 }
