@@ -122,7 +122,8 @@ int bus_create(const char *target, const struct bus_env *env, struct bus **bus, 
 		snprintf(why, why_size, "auto stands for several targets: name one of them");
 		return -EINVAL;
 	}
-	if (!ops && word_len == 3 && memcmp(target, "sim", word_len) == 0) {
+	if (!ops && ((word_len == 3 && memcmp(target, "sim", word_len) == 0) ||
+	             strncmp(target, "replay:", 7) == 0)) {
 		snprintf(why, why_size,
 		         "simulated devices: this target needs owsd-sim in place of owsd "
 		         "(and owsctl-sim, owsd-writer-sim)");

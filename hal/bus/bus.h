@@ -192,6 +192,7 @@ struct bus_event {
 	char text[BUS_EVENT_TEXT];
 };
 
+struct tap;
 /* What the host gives a backend: all that a backend may use to wait or to report. */
 struct bus_env {
 	void *ctx;
@@ -206,6 +207,7 @@ struct bus_env {
 	/* Answers and events reach the host in the order in which they were given. */
 	void (*answer)(void *ctx, const struct bus_answer *answer);
 	void (*event)(void *ctx, const struct bus_event *event);
+	struct tap *tap; /* hal/bus/tap.h; NULL: there is none */
 };
 
 static inline int64_t bus_now(const struct bus_env *env)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "hal/base/rivals.h"
+#include "hal/bus/tap.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/link.h"
@@ -220,6 +221,9 @@ int ds2482_open(struct link_master *base, char *why, size_t why_size)
 		                          why_size);
 	if (err)
 		return err;
+	if (base->env->tap && base->env->tap->adapter)
+		master->adapter = base->env->tap->adapter(base->env->tap, base->env,
+		                                          master->adapter);
 	master->count = 0;
 	if (master->address < 0) {
 		err = take_all(master, why, why_size);

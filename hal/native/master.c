@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "hal/bus/tap.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
 #include "hal/native/answer.h"
 #include "hal/native/branches.h"
@@ -21,12 +22,16 @@
 /* From the first on; those before are known. */
 static void take_channels(struct native *native, unsigned first)
 {
+	struct tap *tap = native->bus.env->tap;
+
 	native->channels = native->master->ops->channels(native->master);
 	if (native->channels > NATIVE_CHANNELS)
 		native->channels = NATIVE_CHANNELS;
 	for (unsigned i = first; i < native->channels; i++) {
 		struct link *link = native->master->ops->channel(native->master, i);
 
+		if (tap && tap->link)
+			link = tap->link(tap, i, link);
 		native_open_channel(native, i, branches_wire(native, i, link), i);
 	}
 }

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "hal/bus/tap.h"
 #include "hal/owserver/connection.h"
 
 #define DEFAULT_HOST "localhost"
@@ -204,11 +205,21 @@ static int begin_remote(struct connection *connection)
 	return err ? err : try_next(connection);
 }
 
+/* Does something else stand in place of the server? */
+static bool is_replayed(const struct connection *connection)
+{
+	return connection->env->tap && connection->env->tap->connect;
+}
+
 int connection_begin(struct connection *connection)
 {
 	int err;
 
 	connection_close(connection);
+	if (is_replayed(connection)) {
+		connection->fd = connection->env->tap->connect(connection->env->tap);
+		return connection->fd < 0 ? connection->fd : 0;
+	}
 	err = connection->host[0] == '/' ? begin_local(connection) : begin_remote(connection);
 	if (err)
 		connection_close(connection);
@@ -231,6 +242,8 @@ int connection_go_on(struct connection *connection, int64_t until_ns)
 {
 	const struct bus_env *env = connection->env;
 
+	if (is_replayed(connection))
+		return 0;
 	for (;;) {
 		bool last = until_ns <= connection->give_up_ns;
 		int ready = env->wait(env->ctx, connection->fd, POLLOUT,
@@ -309,6 +322,8 @@ int connection_send(struct connection *connection, const uint8_t *bytes, size_t 
 			return -errno;
 		}
 	}
+	if (env->tap)
+		env->tap->sent(env->tap, env, bytes, n);
 	return 0;
 }
 
@@ -323,6 +338,8 @@ int connection_receive(struct connection *connection, uint8_t *bytes, size_t roo
 		if (ready <= 0)
 			return ready ? ready : -ETIMEDOUT;
 		n = recv(connection->fd, bytes, room, MSG_DONTWAIT);
+		if (n >= 0 && env->tap)
+			env->tap->received(env->tap, env, bytes, (size_t)n);
 		if (n >= 0)
 			return (int)n;
 		if (errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR)
