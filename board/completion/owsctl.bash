@@ -22,9 +22,11 @@ _owsctl() {
 		words=$(owsctl --help 2>/dev/null | awk '/^  [a-z]/ { print $1 }')
 		[[ $cur != -* || -n $verb ]] || words='-n -t --json --help --version'
 	elif [[ $cur = -* ]]; then
-		words=$(owsctl help "$verb" 2>/dev/null | grep -o -e '--\?[a-zA-Z]\+' | sort -u)
+		words=$(owsctl help "$verb" 2>/dev/null | grep -o -e '--\?[a-zA-Z][a-zA-Z0-9-]*' | sort -u)
 	elif [[ $verb = enable || $verb = disable ]]; then
 		words=$(owsctl enable --dry-run '' 2>&1 | sed -n 's/.*there are: //p')
+	elif [[ $verb = record ]]; then
+		words='scan dir read write'
 	elif [[ $verb = config ]]; then
 		case $((COMP_CWORD - at)) in
 		1)

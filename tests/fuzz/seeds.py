@@ -430,7 +430,17 @@ def sparkplug():
     put("sparkplug", "words", host + b'{"online":"true","timestamp":-1}\0{"online":true,"timestamp":5}')
 
 
+def trace():
+    for file in sorted((HERE.parent / "traces").glob("*.trace")):
+        lines = file.read_text().splitlines(keepends=True)[1:120]
+        put("trace", file.stem, "".join(lines))
+    put("trace", "hostile", "0 1 0 link 0 strong splits slot path search verify driver\n> > 1\n"
+        "nan nan 0 slot 1 > 9999999999\n0 1e99 0 run r - 9 > 0 12\n0 0 7 link 9 triplet > 0\n"
+        "0 0 0 search all 00 > 1 28000000000001AE\n0 0 0 has 28000000000001AE > 1\n"
+        "0 0 i2c adapter > -1\n0 0 net sent \"\\00\" > !EIO \"\\0\n#\n")
+
+
 if __name__ == "__main__":
     for target in (rio, owserver, serve, controller, control, image, w1, netlink, scenario, owsctl,
-                   values, web, writer, sparkplug, modbus):
+                   values, web, writer, sparkplug, modbus, trace):
         target()

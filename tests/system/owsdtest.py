@@ -90,7 +90,8 @@ def with_sim(program, *words, cwd="."):
     name, have a simulated target, its like that has simulated devices (owsd-sim for owsd)."""
     def simulated(word):
         file = os.path.join(cwd, str(word))
-        return "sim:" in str(word) or os.path.isfile(file) and b"sim:" in pathlib.Path(file).read_bytes()
+        text = pathlib.Path(file).read_bytes() if os.path.isfile(file) else b""
+        return any(scheme in str(word).encode() + text for scheme in (b"sim:", b"replay:"))
     return program.with_name(program.name + "-sim") if any(map(simulated, words)) else program
 
 

@@ -111,6 +111,9 @@ static const struct option *longs_of(const char *options)
 		{"dry-run", no_argument, NULL, 'D'},
 		{"fix", no_argument, NULL, 'F'},
 		{"root", required_argument, NULL, 'O'},
+		{"anonymous", no_argument, NULL, 'N'},
+		{"for", required_argument, NULL, 'E'},
+		{"i2c", no_argument, NULL, 'Q'},
 	};
 	static struct option had[sizeof(longs) / sizeof(longs[0]) + 1];
 	struct option *next = had;

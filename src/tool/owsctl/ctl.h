@@ -22,6 +22,7 @@ enum ctl_status {
 };
 
 struct verb;
+struct tap;
 struct ctl {
 	const char *instance;
 	bool named;         /* the user gave the instance with -n */
@@ -29,6 +30,8 @@ struct ctl {
 	bool json;
 	int64_t until_ns;        /* of scan --within, CLOCK_BOOTTIME; 0: no limit */
 	const struct verb *verb; /* the verb that runs */
+	struct tap *tap;         /* of record: it sees what a target does */
+	const struct verb *(*find)(const char *name); /* a verb; NULL: there is none */
 };
 
 struct verb {

@@ -55,6 +55,11 @@ static void print_progress(struct target *target)
 	ctl_tell("%u of %u answers from %s", target->answered, target->count, target->name);
 }
 
+static void print_note(const char *text)
+{
+	ctl_tell("%s", text);
+}
+
 int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target,
                 struct served *served)
 {
@@ -65,7 +70,9 @@ int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target
 	*target = (struct target){.timeout_ns = timeout_ns,
 	                          .until_ns = ctl->until_ns,
 	                          .create = bus_create,
-	                          .progress = print_progress};
+	                          .progress = print_progress,
+	                          .tap = ctl->tap,
+	                          .note = print_note};
 	*served = (struct served){0};
 	if (!name && served_find(ctl, served))
 		return CTL_FAILED;

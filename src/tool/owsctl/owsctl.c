@@ -138,6 +138,16 @@ static const struct verb verbs[] = {
          "  --merge FILE       add to that file what it has not; its names stay\n"
          "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
          .example = "-t i2c:/dev/i2c-1 scan --rio >plant.rio", .opens = true, .finds = true},
+	{"record", "[-t TARGET] [--anonymous | --i2c] [--for SECONDS] FILE [VERB [ARG]...]",
+         "record what goes over a wire while a verb looks at it, for a report", verb_record,
+         .options = "  -t TARGET      as for scan\n"
+                    "  --anonymous    other ids in place of those of your chips\n"
+                    "  --i2c          the transactions of the I2C adapter of a DS2482\n"
+                    "  --for SECONDS  do it again and again until that time is over\n"
+                    "  VERB           scan (if you name none), dir, read or write\n"
+                    "  replay:FILE is a target of the simulator, which answers as recorded\n",
+         .example = "-t i2c:/dev/i2c-1 record --anonymous trouble.trace", .opens = true,
+         .finds = true},
 	{"help", "[VERB]", "this list, or what a verb takes", verb_help, .example = "help watch"},
 };
 enum { JSON = 256 };
@@ -182,7 +192,7 @@ static const struct {
 	{"shelve", "alarms shelve"}, {"unshelve", "alarms unshelve"}, {"ps", "instances"},
 	{"rm", "remove"}, {"edit", "config"}, {"rename", "config"}, {"add", "config"},
 	{"check", "doctor"}, {"diagnose", "doctor"}, {"start", "enable"}, {"stop", "disable"},
-	{"devices", "scan"}, {"search", "scan"}, {"find", "scan"}, {"tree", "dir"},
+	{"devices", "scan"}, {"search", "scan"}, {"trace", "record"}, {"find", "scan"}, {"tree", "dir"},
 };
 /* clang-format on */
 #define OTHERS (sizeof(others) / sizeof(others[0]))
@@ -264,7 +274,9 @@ int main(int argc, char **argv)
 		{0},
 	};
 	const char *name = getenv("OWS_NAME");
-	struct ctl ctl = {.instance = name && *name ? name : "OWS", .named = name && *name};
+	struct ctl ctl = {.instance = name && *name ? name : "OWS",
+	                  .named = name && *name,
+	                  .find = find_verb};
 	char why[1024];
 	int c;
 
@@ -318,7 +330,7 @@ int main(int argc, char **argv)
 	if (ctl.target && !ctl.verb->opens)
 		return ctl_usage(
 			&ctl,
-			"-t TARGET is for dir, read, write and scan; %s looks at a running owsd",
+			"-t TARGET is for dir, read, write, scan and record; %s looks at a running owsd",
 			ctl.verb->name);
 	if (ctl.verb->finds)
 		find_instance(&ctl, argc, argv);

@@ -24,6 +24,7 @@ static void *read_some(void *ctx)
 	struct target target = {.create = reader->like->create,
 	                        .name = reader->like->name,
 	                        .timeout_ns = reader->like->timeout_ns,
+	                        .tap = reader->like->tap,
 	                        .until_ns = reader->like->until_ns};
 	char why[300];
 
@@ -42,7 +43,8 @@ static void *read_some(void *ctx)
 int scan_read_parallel(const struct target *like, struct scan *scan, bool fresh)
 {
 	struct reader readers[READERS] = {0};
-	unsigned n = scan->count < READERS ? scan->count : READERS, given = 0;
+	unsigned readers_max = like->tap ? 1 : READERS, given = 0;
+	unsigned n = scan->count < readers_max ? scan->count : readers_max;
 	int err = 0;
 
 	for (unsigned i = 0; i < n; i++) {

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "hal/bus/tap.h"
 #include "src/faces/show/json.h"
 #include "src/tool/scan/target.h"
 
@@ -41,9 +42,12 @@ static void take_answer(void *ctx, const struct bus_answer *answer)
 {
 	struct target *target = ctx;
 	uint32_t i = answer->id - target->first_id;
+	const struct bus_env *env = target->bus->env;
 
 	if (i >= target->count)
 		return;
+	if (env->tap)
+		env->tap->answered(env->tap, env, &target->asks[i].req, answer);
 	target->asks[i].answer = *answer;
 	target->answered++;
 }
@@ -60,10 +64,13 @@ static void take_event(void *ctx, const struct bus_event *event)
 		target->down = true;
 		target->loss = *event;
 		break;
+	case BUS_NOTE:
+		if (target->note && target->bus->ops->testing)
+			target->note(event->text);
+		break;
 	case BUS_FOUND:
 	case BUS_LOST:
 	case BUS_POR:
-	case BUS_NOTE:
 	case BUS_TROUBLE:
 	case BUS_RELEASED:
 	case BUS_BACK:
@@ -103,7 +110,8 @@ static int connect_once(struct target *target, char *why, size_t why_size)
 	                               .now = boottime,
 	                               .wait = wait_fd,
 	                               .answer = take_answer,
-	                               .event = take_event};
+	                               .event = take_event,
+	                               .tap = target->tap};
 	target->up = target->down = false;
 	why[0] = '\0';
 	err = target->create(target->name, &target->env, &target->bus, why, why_size);

@@ -18,6 +18,9 @@ struct target {
 	/* Called while several requests are under way; NULL: the caller shows no progress. */
 	void (*progress)(struct target *target);
 	int64_t printed_ns; /* of progress */
+	struct tap *tap;    /* it sees all that the target does; NULL: there is none */
+	/* What a target that stands for a recording has to say; NULL: it is not shown. */
+	void (*note)(const char *text);
 	struct bus *bus;
 	struct bus_env env;
 	bool up, down;
