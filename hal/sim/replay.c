@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/time.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
@@ -19,10 +20,58 @@
 struct replay {
 	struct bus_ops ops; /* first */
 	void (*destroy)(struct bus *bus);
-	struct bus_env env; /* the host's, with the tap */
+	struct bus_env env; /* with the tap */
+	const struct bus_env *host;
+	int64_t now_ns;
 	struct trace trace;
 	char name[];
 };
+
+/*
+ * --- The time of a replay ---
+ *
+ * It stands still but while a recorded call lasts, and in waits: what a driver measures is what it
+ * measured then. It is behind the host's by what the calls cost here, which the next wait makes up.
+ */
+
+#define LATE_NS (50 * NS_PER_MS)
+
+static int64_t replay_now(void *ctx)
+{
+	struct replay *replay = ctx;
+	int64_t now_ns = bus_now(replay->host);
+
+	if (now_ns - replay->now_ns > LATE_NS)
+		replay->now_ns = now_ns;
+	return replay->now_ns;
+}
+
+static int replay_wait(void *ctx, int fd, short events, int64_t until_ns)
+{
+	struct replay *replay = ctx;
+	int ready = replay->host->wait(replay->host->ctx, fd, events, until_ns);
+	int64_t now_ns = ready > 0 ? bus_now(replay->host) : until_ns;
+
+	if (now_ns > replay->now_ns)
+		replay->now_ns = now_ns;
+	return ready;
+}
+
+static void give_answer(void *ctx, const struct bus_answer *answer)
+{
+	const struct bus_env *host = ((struct replay *)ctx)->host;
+
+	host->answer(host->ctx, answer);
+}
+
+static void give_event(void *ctx, const struct bus_event *event)
+{
+	const struct bus_env *host = ((struct replay *)ctx)->host;
+
+	host->event(host->ctx, event);
+}
+
+/* --- Links --- */
 
 struct replay_master {
 	struct link_master master; /* first */
@@ -158,8 +207,13 @@ static int replay_create(const char *where, const struct bus_env *env, struct bu
 		return -ENOMEM;
 	memcpy(replay->name, where, strlen(where) + 1);
 	err = trace_read(&replay->trace, replay->name, why, why_size);
-	replay->env = *env;
-	replay->env.tap = &replay->trace.tap;
+	replay->host = env;
+	replay->env = (struct bus_env){.ctx = replay,
+	                               .now = replay_now,
+	                               .wait = replay_wait,
+	                               .answer = give_answer,
+	                               .event = give_event,
+	                               .tap = &replay->trace.tap};
 	if (!err)
 		err = create_on(replay, bus, why, why_size);
 	if (err) {

@@ -32,9 +32,11 @@ static struct trace_adapter *ask(struct i2c_adapter *adapter, const char *what, 
 static int answer(struct trace_adapter *told, int result, uint8_t *bytes, size_t n)
 {
 	struct i2c_adapter *under = told->under;
+	size_t got = under && result < 0 ? 0 : n;
 
-	n = result < 0 ? 0 : n;
-	result = trace_told(told->trace, told->env, &told->trace->i2c, result, bytes, &n);
+	result = trace_told(told->trace, told->env, &told->trace->i2c, result, bytes, &got);
+	if (!under && got && got < n)
+		memset(bytes + got, bytes[got - 1], n - got);
 	if (under) {
 		told->adapter.transfers = under->transfers;
 		told->adapter.bytes = under->bytes;

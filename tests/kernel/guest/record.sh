@@ -27,7 +27,8 @@ records() {
 
 plug netlink.sim
 records kernel-i2c i2c:/dev/i2c-0 --anonymous
-records kernel-i2c-bytes i2c:/dev/i2c-0:0x19 --i2c
+does "the adapter's bytes are recorded" owsctl -t i2c:/dev/i2c-0:0x19 record --i2c /tmp/bytes.trace
+does "with each transaction" grep -q ' i2c transfer 19 w A5CC' /tmp/bytes.trace
 
 owserver --i2c=/dev/i2c-0:ALL -p 127.0.0.1:4304 --foreground >>/tmp/log/owserver 2>&1 &
 server=$!
