@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Scheme "replay": the native bus, or that of owserver, on a recording. Its links, its connection or
- * its I2C adapter answer as recorded; what is above them is owsd's own.
+ * Scheme "replay": the native bus, or that of owserver, on a recording. Its links, its connection
+ * or its I2C adapter answer as recorded; what is above them is owsd's own.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -14,7 +14,8 @@
 #include "hal/ds2482/power.h"
 #include "hal/native/native.h"
 #include "hal/sim/replay.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/links.h"
+#include "hal/trace/tap.h"
 
 /* Stands in place of the operations of the bus, whose copy it has. */
 struct replay {
@@ -206,7 +207,7 @@ static int replay_create(const char *where, const struct bus_env *env, struct bu
 	if (!replay)
 		return -ENOMEM;
 	memcpy(replay->name, where, strlen(where) + 1);
-	err = trace_read(&replay->trace, replay->name, why, why_size);
+	err = trace_replay(&replay->trace, replay->name, why, why_size);
 	replay->host = env;
 	replay->env = (struct bus_env){.ctx = replay,
 	                               .now = replay_now,

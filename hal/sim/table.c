@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The table of the backends, sim and replay: owsd-sim is linked with it in place of hal/bus/table.c. */
+/* The backends, sim and replay: owsd-sim has this table in place of hal/bus/table.c. */
 #include "hal/bus/bus.h"
 #include "hal/sim/bus.h"
 #include "hal/sim/replay.h"

@@ -15,6 +15,7 @@
 #include <strings.h>
 
 #include "hal/owfs/path.h"
+#include "hal/trace/anonymous.h"
 #include "hal/trace/trace.h"
 #include "hal/wire/crc.h"
 #include "hal/wire/device.h"

@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "hal/trace/trace.h"
+#include "hal/trace/frames.h"
 
 /* --- A recording: what comes until something is sent, or the peer ends, is one answer --- */
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "hal/ds2482/i2c.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/i2c.h"
 
 struct trace_adapter {
 	struct i2c_adapter adapter; /* first */

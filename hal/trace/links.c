@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Links in front of others, which record the calls, and links in place of them, which answer as
- * recorded. What a link has (link_ops, link_facts) stands in the line "link". It makes one transaction
- * after the other (no run_many), so that a replay is asked the same.
+ * recorded. What a link has (link_ops, link_facts) stands in the line "link". It makes one
+ * transaction after the other (no run_many), so that a replay is asked the same.
  */
 #include <stdlib.h>
 #include <string.h>
 
 #include "hal/chips/area.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/links.h"
 #include "hal/wire/device.h"
 #include "hal/wire/driver.h"
 #include "hal/wire/link.h"

@@ -164,24 +164,6 @@ void trace_result_text(struct trace_text *text, int result, const uint8_t *bytes
 		trace_bytes(text, bytes, n, quoted);
 }
 
-void trace_record(struct trace *trace, FILE *file, bool i2c)
-{
-	*trace = (struct trace){
-		.tap = {.adapter = i2c ? trace_adapter_of : NULL,
-	                .link = i2c ? NULL : trace_link_of,
-	                .sent = trace_sent,
-	                .received = trace_received,
-	                .answered = trace_answered},
-		.file = file,
-		.left = TRACE_MOST / 2,
-		.net = {.name = "net", .quotes = true},
-		.i2c = {.name = "i2c"},
-		.bus = {.name = "bus", .quotes = true},
-		.peer = -1,
-	};
-	fputs(TRACE_BEGIN, file);
-}
-
 /* --- Replaying --- */
 
 int trace_result(const char *answer)
@@ -269,20 +251,8 @@ int trace_read(struct trace *trace, const char *name, char *why, size_t why_size
 	int err = 0;
 	size_t count = 1, number = 1;
 
-	*trace = (struct trace){
-		.tap = {.adapter = trace_adapter_of,
-	                .link = trace_link_of,
-	                .connect = trace_connect,
-	                .sent = trace_sent,
-	                .received = trace_received,
-	                .answered = trace_answered},
-		.net = {.name = "net", .quotes = true},
-		.i2c = {.name = "i2c"},
-		.bus = {.name = "bus", .quotes = true},
-		.name = name,
-		.text = file_text(name, TRACE_MOST, &err, why, why_size),
-		.peer = -1,
-	};
+	trace->name = name;
+	trace->text = file_text(name, TRACE_MOST, &err, why, why_size);
 	if (!trace->text)
 		return err;
 	if (strncmp(trace->text, TRACE_BEGIN, strlen(TRACE_BEGIN)) != 0) {
@@ -344,7 +314,7 @@ static const struct trace_line *next_of(const struct trace *trace, const struct 
 	return NULL;
 }
 
-/* From the line given last on, and then from the beginning: a recording is answered from for ever. */
+/* From the line given last on, and then from the beginning: a replay has no end. */
 const struct trace_line *trace_find(struct trace *trace, const struct bus_env *env,
                                     struct trace_place *place)
 {
@@ -405,10 +375,8 @@ bool trace_has(const struct trace *trace, const char *place)
 	return false;
 }
 
-void trace_end(struct trace *trace)
+void trace_free(struct trace *trace)
 {
-	trace_frames_end(trace);
-	trace_links_free(trace);
 	free(trace->question.text);
 	free(trace->answer.text);
 	free(trace->line);

@@ -7,10 +7,11 @@
  * A line is a question and its answer. The same functions stand in front of a link, where they
  * write down what it answers, and in place of it, where they look the answer up.
  *
- *   trace.c      lines: written, read, looked up
+ *   tap.c        a recording, or a replay, is begun and ended
  *   links.c      the calls of links
  *   i2c.c        the transactions of an I2C adapter
  *   frames.c     the exchanges of connections, the answers of a bus
+ *   trace.c      lines: written, read, looked up
  *   anonymous.c  other ids in place of those of a recording
  *
  * Room hal/trace: recordings of buses: written, made anonymous, answered from.
@@ -72,14 +73,12 @@ struct trace {
 	int peer; /* the other end of what connect() gave; -1 */
 };
 
-/* Record to file, which the caller closes. i2c: the transactions of the adapter of a DS2482. */
-void trace_record(struct trace *trace, FILE *file, bool i2c);
-/* Replay a file. 0, -ENOMEM, or -EINVAL with the reason in why. */
+/* Read the lines of a file. 0, -ENOMEM, or -EINVAL with the reason in why. */
 int trace_read(struct trace *trace, const char *name, char *why, size_t why_size);
 /* Is there a line of this place, as "net"? */
 bool trace_has(const struct trace *trace, const char *place);
-/* Ends either; of a recording, what is begun is written first. */
-void trace_end(struct trace *trace);
+/* Free the lines and the texts. */
+void trace_free(struct trace *trace);
 /* Are lines left out, since the file would be too long? */
 bool trace_full(const struct trace *trace);
 
@@ -108,27 +107,3 @@ int trace_result(const char *answer);
 /* Tells the host of a replay something about it; after some it is silent. */
 void trace_note(struct trace *trace, const struct bus_env *env, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
-
-/* i2c.c; under NULL: it is replayed */
-struct i2c_adapter *trace_adapter_of(struct tap *tap, const struct bus_env *env,
-                                     struct i2c_adapter *under);
-/* links.c. trace_link_count: how many links are recorded. */
-struct link *trace_link_of(struct tap *tap, unsigned n, struct link *link);
-unsigned trace_link_count(const struct trace *trace);
-void trace_links_free(struct trace *trace);
-/* frames.c */
-int trace_connect(struct tap *tap);
-void trace_sent(struct tap *tap, const struct bus_env *env, const uint8_t *bytes, size_t n);
-void trace_received(struct tap *tap, const struct bus_env *env, const uint8_t *bytes, size_t n);
-void trace_answered(struct tap *tap, const struct bus_env *env, const struct bus_req *req,
-                    const struct bus_answer *answer);
-void trace_frames_end(struct trace *trace);
-
-/*
- * Replace the ids in the text of a recording: other serial numbers of the same families, the same
- * one everywhere, with right checksums. mask: random bytes. An id is changed by the same bits as
- * all others, but for those where two of them part: so searches find them in the same order. Its
- * two last bytes stay, which tell the version of a DS1921, or a clone.
- */
-#define TRACE_MASK 4
-void trace_anonymous(char *text, const uint8_t mask[TRACE_MASK]);

@@ -10,6 +10,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "hal/trace/anonymous.h"
 #include "hal/trace/trace.h"
 #include "tests/fuzz/bus_host.h"
 

@@ -14,7 +14,8 @@
 
 #include "hal/base/time.h"
 #include "hal/bus/backends.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/anonymous.h"
+#include "hal/trace/tap.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/verbs.h"
 

@@ -28,7 +28,7 @@ records() {
 plug netlink.sim
 records kernel-i2c i2c:/dev/i2c-0 --anonymous
 does "the adapter's bytes are recorded" owsctl -t i2c:/dev/i2c-0:0x19 record --i2c /tmp/bytes.trace
-does "with each transaction" grep -q ' i2c transfer 19 w A5CC' /tmp/bytes.trace
+does "with the bytes of a search" grep -q ' i2c transfer 19 w A5F0' /tmp/bytes.trace
 
 owserver --i2c=/dev/i2c-0:ALL -p 127.0.0.1:4304 --foreground >>/tmp/log/owserver 2>&1 &
 server=$!

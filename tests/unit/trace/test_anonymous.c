@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include "hal/owfs/path.h"
+#include "hal/trace/anonymous.h"
 #include "hal/trace/trace.h"
 #include "hal/wire/crc.h"
 

@@ -7,7 +7,7 @@
 #include "unity.h"
 
 #include "hal/sim/replay.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/tap.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/owserver_scene.h"
 

@@ -8,7 +8,7 @@
 
 #include "hal/sim/bus.h"
 #include "hal/sim/replay.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/tap.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/one_bus.h"
 

@@ -9,7 +9,9 @@
 
 #include "hal/owfs/path.h"
 #include "hal/sim/replay.h"
-#include "hal/trace/trace.h"
+#include "hal/trace/anonymous.h"
+#include "hal/trace/frames.h"
+#include "hal/trace/tap.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/native_scene.h"
 
@@ -180,7 +182,7 @@ static void test_an_answer_of_the_bus_is_compared(void)
 
 	trace_answered(&trace.tap, &host.env, &req[id], &answer);
 	replay();
-	trace_read(&trace, file, (char[100]){0}, 100);
+	trace_replay(&trace, file, (char[100]){0}, 100);
 	req[id].data = data[id];
 	memcpy(data[id], "          22", 12);
 	trace_answered(&trace.tap, &host.env, &req[id], &answer);

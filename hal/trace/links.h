@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* Links in front of others, or in place of them. */
+#pragma once
+
+#include "hal/trace/trace.h"
+
+/* As tap.link. */
+struct link *trace_link_of(struct tap *tap, unsigned n, struct link *link);
+/* How many are recorded. */
+unsigned trace_link_count(const struct trace *trace);
+void trace_links_free(struct trace *trace);
