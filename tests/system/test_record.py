@@ -93,7 +93,8 @@ def test_owsd_runs_on_a_recording(scene):
     ctl(scene, sim(scene), "record", file)
     item = dict(Name="cellar", Path="/10.0000000000C1/temperature", Type=owsdtest.raw("double"),
                 IO=owsdtest.raw("input"))
-    daemon = scene.owsd(owsdtest.rio(f"replay:{file}", [item], Period=0.2))
+    # the file counts from the folder of the configuration
+    daemon = scene.owsd(owsdtest.rio("replay:it.trace", [item], Period=0.2))
     scene.until(lambda: scene.get(daemon, "cellar") == "12.5", 60, "the recorded temperature")
 
 

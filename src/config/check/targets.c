@@ -16,7 +16,7 @@ static bool is_scheme(const char *text, size_t len)
 #define BACKEND(name, automatic) #name,
 #include "hal/bus/schemes.h"
 #undef BACKEND
-		"sim", NULL};
+		"sim", "replay", NULL};
 
 	for (int i = 0; schemes[i]; i++)
 		if (strlen(schemes[i]) == len && !memcmp(schemes[i], text, len))

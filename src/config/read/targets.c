@@ -54,7 +54,6 @@ const char *relative_file(struct build *build, const char *text, size_t prefix,
 }
 
 #define DEFAULT_TARGET "localhost:4304"
-#define SIMULATED "sim:"
 
 #define AUTO "auto"
 
@@ -74,10 +73,14 @@ const char *config_auto_way(unsigned *row)
 
 const char *target_of_file(struct build *build, const char *text, struct rio_position position)
 {
+	static const char *const schemes[] = {"sim:", "replay:"};
+
 	/* on the command line the working directory counts */
-	if (!position.file || strncmp(text, SIMULATED, strlen(SIMULATED)) != 0)
-		return text;
-	return relative_file(build, text, strlen(SIMULATED), position.line ? &position : NULL);
+	for (size_t i = 0; position.file && i < sizeof(schemes) / sizeof(schemes[0]); i++)
+		if (strncmp(text, schemes[i], strlen(schemes[i])) == 0)
+			return relative_file(build, text, strlen(schemes[i]),
+			                     position.line ? &position : NULL);
+	return text;
 }
 
 static void target_add(struct build *build, const char *text, size_t len,

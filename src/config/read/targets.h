@@ -16,7 +16,10 @@ const char *config_auto_way(unsigned *row);
 
 #define TARGET_MAX 255
 
-/* The target with the file of sim:FILE as relative_file() has it; warns if position has a line. */
+/*
+ * The target with the file of sim:FILE or replay:FILE as relative_file() has it; warns if position
+ * has a line.
+ */
 const char *target_of_file(struct build *build, const char *text, struct rio_position position);
 /* Parse "a, b | c" and append the targets. Errors are reported at position. */
 void targets_add(struct build *build, const char *text, struct rio_position position);

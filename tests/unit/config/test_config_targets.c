@@ -53,7 +53,7 @@ static void test_the_scheme_of_each_backend_is_no_host(void)
 #define BACKEND(name, automatic) #name ":x",
 #include "hal/bus/schemes.h"
 #undef BACKEND
-		"sim:x"};
+		"sim:x", "replay:x"};
 	char text[TARGET_CANONICAL];
 
 	for (size_t i = 0; i < sizeof(targets) / sizeof(targets[0]); i++) {
