@@ -32,10 +32,12 @@ static unsigned away_count;
 static struct porter *porter;
 static int64_t tended_ns;
 static struct log *reports;
+/* Other threads call what is replaced here too, and have no connection of the page. */
+static _Thread_local bool has_wires;
 
 static struct wire *wire_of(int fd)
 {
-	return fd >= 0 && fd < WIRE_FDS && wires[fd].used ? &wires[fd] : NULL;
+	return has_wires && fd >= 0 && fd < WIRE_FDS && wires[fd].used ? &wires[fd] : NULL;
 }
 
 /* --- In place of the C library's ------------------------------------------------------------- */
@@ -118,6 +120,7 @@ ssize_t wire_sendfile(int fd, int file, off64_t *offset, size_t len)
 
 int wire_open(struct log *log)
 {
+	has_wires = true;
 	reports = log;
 	return porter_start(&porter);
 }

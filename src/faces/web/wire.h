@@ -18,7 +18,10 @@
 
 struct log;
 
-/* Before the first thread: starts the porter. 0 or a negative errno. */
+/*
+ * Before the first thread: starts the porter. The thread that calls this has the connections; in
+ * others the calls are those of the C library. 0 or a negative errno.
+ */
 int wire_open(struct log *log);
 /* A connection begins, local: of a unix socket. False: its descriptor is too high. */
 bool wire_begin(int fd, bool local, int place);
