@@ -26,6 +26,7 @@
 #                                 becomes of what both write, against what is recorded; WRITE=1
 #                                 records it, PARTS='DS2438 DS2450' some
 #   make properties-page          docs/properties.md, of what is recorded
+#   make devices-page             docs/devices.md, of the tables of the chips
 #   make diagrams                 the picture of the alarm machine, of its table
 #   make bench                    how fast it is
 #   make bench-page               make bench and make bench-kernel into docs/performance.md, with plots
@@ -313,8 +314,8 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
 
 .PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
         deb repository test-package test-service test-fresh dist test-dist clean \
-        examples unit-programs benches system-programs diagrams compare properties-page check check-all \
-        touched mutate helpers help FORCE
+        examples unit-programs benches system-programs diagrams compare properties-page devices-page \
+        check check-all touched mutate helpers help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -649,6 +650,10 @@ compare: all $(SYSTEM_AIDS)
 properties-page: all
 	@OWSD_BUILD=$(abspath $(B)) python3 docs/properties.py >docs/properties.md.new
 	mv docs/properties.md.new docs/properties.md
+
+devices-page: $(B)/system/families
+	@OWSD_BUILD=$(abspath $(B)) python3 docs/devices.py >docs/devices.md.new
+	mv docs/devices.md.new docs/devices.md
 
 # --- Install ----------------------------------------------------------------------------------
 D := $(DESTDIR)

@@ -462,6 +462,13 @@ def test_each_rung_of_the_recovery_is_explained_by_its_counter(_scene):
     assert len(names) >= 7 and not missing, (names, missing)
 
 
+def test_the_page_of_devices_is_made_of_the_tables(_scene):
+    done = subprocess.run([sys.executable, SOURCE / "docs/devices.py"], capture_output=True, text=True, timeout=60,
+                          env={**os.environ, "OWSD_BUILD": str(owsdtest.BUILD), "PYTHONDONTWRITEBYTECODE": "1"})
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == (SOURCE / "docs/devices.md").read_text(), "run: make devices-page"
+
+
 def test_each_counter_that_owsctl_prints_has_its_words(scene):
     page = re.sub(r"\\-", "-", (SOURCE / "docs/owsd-signals.7").read_text())
     wire = scene.file("wire.sim", "chip DS2482-100 0x18\nDS18B20 28.551DDF030000\n")

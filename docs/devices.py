@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""devices.py: write docs/devices.md on the standard output, from the tables of the chip families
+(tests/system/families.c prints them), of owserver's /structure (tests/unit/data/owfs-structure.tsv)
+and of the kernel's drivers (docs/properties.py). `make devices-page` writes it into its place.
+"""
+
+import collections
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import textwrap
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
+DRIVERS = SOURCE / "docs/properties.py"
+STRUCTURE = SOURCE / "tests/unit/data/owfs-structure.tsv"
+BRIDGES = {"19": "DS28E17", "56": "DS28E18"}
+READ, WRITE = 1, 2
+LATCH, STAYS, CLEARS, POR = 1, 2, 4, 8
+PLACES = 12  # what a row names at most; the others are counted
+
+Property = collections.namedtuple(
+    "Property", "name type access hidden least most decimals unit alarm holds size")
+
+INTRO = """# The chips
+
+{count} families of chips, and any I2C sensor [behind a DS28E17 or DS28E18](bridges.md).
+`make devices-page` writes this page from the tables of the program, and a test compares them.
+
+- **No real chip was at hand.** Each was simulated bit by bit ([tested.md](tested.md)).
+- **What it has** are the signals that `owsctl scan --rio` makes. `owsctl dir /ID` lists all
+  properties of a chip, [properties.md](properties.md) compares each with owserver's, and
+  [native.md](native.md#not-like-owserver) says what owsd does otherwise.
+- **The range** is what a chip can measure, with the error that its data sheet allows. A number
+  outside is never a good value.
+- **Outputs** with *read back* are read again: owsd notices when the chip does not do what was
+  written.
+- **Alarm**: the chip takes part in the alarm search ([alarms.md](alarms.md)). The names are the
+  properties for `LatchAlarm` (*stays*: until `ResetLatch`) and `PorAlarm`.
+- **Ways**: each chip works over all adapters that owsd drives itself (`i2c:`, `usb:`, `serial:`,
+  `uart:`, `w1:netlink`). Column *w1*: also by the files of a driver of the kernel
+  ([w1.md](w1.md)). An owserver knows all codes of this page but: {missing}.
+"""
+
+
+def families():
+    """The families as families.c prints them: dictionaries."""
+    said = subprocess.run([BUILD / "system/families"], check=True, capture_output=True, text=True).stdout
+    found = []
+    for line in said.splitlines():
+        what, *rest = line.split("\t")
+        if what == "family":
+            code, chip, alarms, several = rest
+            found.append(dict(code=code, type=chip, alarms=alarms == "1", several=several == "1", kinds=[],
+                              scan=[], properties={}, simulated=[]))
+        elif what == "kind":
+            found[-1]["kinds"].append(rest[1])
+        elif what == "scan":
+            found[-1]["scan"].append(rest)
+        elif what == "simulated":
+            found[-1]["simulated"].append(rest[0])
+        else:
+            row = Property(rest[0], rest[1], int(rest[2]), rest[3] == "1", float(rest[4]), float(rest[5]),
+                           int(rest[6]), rest[7], int(rest[8]), rest[9] == "1", int(rest[10]))
+            found[-1]["properties"][row.name] = row
+    return found
+
+
+def usual():
+    """{code: the chips}, of the one list of families."""
+    text = (SOURCE / "hal/chips/families.h").read_text()
+    return {code.upper(): chip for code, chip in re.findall(r"FAMILY\((\w\w)\) /\* (.*?) \*/", text)}
+
+
+def driven():
+    """The families that target w1 serves by a driver's own files."""
+    text = DRIVERS.read_text()
+    return set(re.findall(r'"(\w\w)":', re.search(r"^DRIVEN = \{(.*?)\n *\}\s*$|^DRIVEN = \{(.*?)\}\n[A-Z]",
+                                                   text, re.M | re.S)[0]))
+
+
+def row_of(family, name):
+    """The property that a scan's row names."""
+    return family["properties"].get(re.split(r"\.(?=[^./]+$)", name)[0])
+
+
+def number(x):
+    return (f"{x:.0f}" if abs(x) >= 1000 else f"{x:.4g}").replace("-", "\u2212")
+
+
+def measured(row):
+    """"-55 to 125 C", or the unit alone, or nothing."""
+    unit = row.unit or {"t": "\u00b0C", "p": "mbar", "g": "K"}.get(row.type, "")
+    if row.least >= row.most or math.isinf(row.least):
+        return unit
+    if not unit and row.least == 0 and row.most >= 65535:
+        return "counts"
+    return f"{number(row.least)} {unit} and more" if math.isinf(row.most) else \
+        f"{number(row.least)} to {number(row.most)} {unit}".strip()
+
+
+def has(family):
+    """What a scan makes signals of, those with one range together; else what the chip is for."""
+    groups = collections.OrderedDict()
+    for name, _ in family["scan"][:PLACES]:
+        row = row_of(family, name)
+        back = ""
+        if row and row.access & WRITE and row.type in "yB":
+            back = "output, read back" if row.holds else "output"
+        groups.setdefault(", ".join(filter(None, [row and measured(row), back])), []).append(f"`{name}`")
+    found = [", ".join(names) + (f" ({what})" if what else "") for what, names in groups.items()]
+    more = len(family["scan"]) - PLACES
+    if more > 0:
+        found.append(f"{more} more")
+    memory = family["properties"].get("memory")
+    if memory:
+        found.append(f"memory of {memory.size} bytes")
+    if "date" in family["properties"]:
+        found.append("clock")
+    if not found:
+        names = [p.name for p in family["properties"].values() if not p.hidden and p.type != "D" and p.access]
+        found = ["properties as " + ", ".join(f"`{n}`" for n in names[:4])] if names else ["its id"]
+    return "; ".join(found)
+
+
+def alarm(family):
+    latch = [f"`{p.name}`" + (" (stays)" if p.alarm & STAYS else "") for p in family["properties"].values()
+             if p.alarm & LATCH and not p.hidden]
+    por = [f"`{p.name}`" for p in family["properties"].values() if p.alarm & POR]
+    return ", ".join(latch + por) or ("yes" if family["alarms"] else "")
+
+
+def line(cells):
+    return "| " + " | ".join(cells) + " |"
+
+
+def page():
+    served = {row.split("\t")[0] for row in STRUCTURE.read_text().splitlines()[1:]}
+    w1, names, found = driven(), usual(), families()
+    assert all(family["simulated"] for family in found), "the page says that each was simulated"
+    missing = [f["code"] for f in found if f["code"] not in served]
+    out = [INTRO.format(count=len(found), missing=", ".join(missing)),
+           line(["code", "chip", "what it has", "alarm", "w1"]), "|---|---|---|---|---|"]
+    index = {}
+    for family in found:
+        code, chips = family["code"], names.get(family["code"], family["type"])
+        others = [c for c in dict.fromkeys(family["kinds"] + family["simulated"])
+                  if re.fullmatch(r"[A-Z]+\d\w*", c)]
+        for chip in [family["type"], *others]:
+            if re.search(r"\d", chip):
+                index.setdefault(chip, code)
+        out.append(line([code, ", ".join([chips, *(c for c in others if c not in chips and code != "7E")]),
+                         has(family), alarm(family), "yes" if code in w1 else ""]))
+    index.update((chip, code) for code, chip in BRIDGES.items())
+    out += ["", "## By the name of the chip", "", *textwrap.wrap(", ".join(
+        f"{chip} {code}" for chip, code in sorted(index.items())) + ".", 100), ""]
+    return "\n".join(out)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())
