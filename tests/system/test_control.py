@@ -297,7 +297,7 @@ def test_of_another_pid_namespace_the_user_counts_and_the_process_is_unknown(sce
     controller = scene.start(["unshare", "--pid", "--fork", "--kill-child", *inside])
     owsdtest.logged(controller, "0 0")
     until(lambda: ctl(scene, "reader", name, "get", "relays").stdout.strip() == "8", 20)
-    assert connected(scene, name) == 1
+    until(lambda: connected(scene, name) == 1, 20)
     os.unlink(goes_on)
     assert controller.wait() == 0
     until(lambda: connected(scene, name) == 0, 20)
