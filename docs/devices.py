@@ -33,8 +33,7 @@ INTRO = """# The chips
 
 - **No real chip was at hand.** Each was simulated bit by bit ([tested.md](tested.md)).
 - **What it has** are the signals that `owsctl scan --rio` makes. `owsctl dir /ID` lists all
-  properties of a chip, [properties.md](properties.md) compares each with owserver's, and
-  [native.md](native.md#not-like-owserver) says what owsd does otherwise.
+  properties of a chip. [properties.md](properties.md) compares each with owserver's.
 - **The range** is what a chip can measure, with the error that its data sheet allows. A number
   outside is never a good value.
 - **Outputs** with *read back* are read again: owsd notices when the chip does not do what was
