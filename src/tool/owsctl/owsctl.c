@@ -138,7 +138,7 @@ static const struct verb verbs[] = {
          "  --merge FILE       add to that file what it has not; its names stay\n"
          "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
          .example = "-t i2c:/dev/i2c-1 scan --rio >plant.rio", .opens = true, .finds = true},
-	{"record", "[-t TARGET] [--anonymous | --i2c] [--for SECONDS] FILE [VERB [ARG]...]",
+	{"record", "[-t TARGET] [--anonymous|--i2c] [--for SECONDS] FILE [VERB ...]",
          "record what goes over a wire while a verb looks at it, for a report", verb_record,
          .options = "  -t TARGET      as for scan\n"
                     "  --anonymous    other ids in place of those of your chips\n"
