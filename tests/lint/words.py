@@ -52,7 +52,8 @@ def script_of(table, public):
 def page_of(table):
     """Tables: of qualities and of alarms with cause and remedy, of healths, of errors with the remedy."""
     def row(*cells):
-        return "| " + " | ".join(re.sub(r'"((?:owsctl|property)[^"]*)"', r"`\1`", cell) for cell in cells) + " |"
+        cells = (re.sub(r'"((?:owsctl|property)[^"]*)"', r"`\1`", cell) for cell in cells)
+        return "| " + " | ".join(re.sub(r"(?<![`\w])owsctl [a-z]+", r"`\g<0>`", cell) for cell in cells) + " |"
 
     def head(*cells):
         return ["", row(*cells), "|---" * len(cells) + "|"]
