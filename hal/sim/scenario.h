@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The scenario language (docs/simulator.md): a text that makes a simulated network. */
+/* The scenario language (docs/owsd.sim.5): a text that makes a simulated network. */
 #pragma once
 
 #include "hal/sim/net.h"

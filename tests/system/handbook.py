@@ -10,7 +10,7 @@ import re
 
 # file: the name by which the page calls it, as in "`first.c`:" before it, or None
 Block = collections.namedtuple("Block", "page line language text file")
-MAN_LANGUAGE = {".1": "sh", ".3": "c", ".5": "rio", ".7": "sh", ".8": "sh"}
+MAN_LANGUAGE = {".1": "sh", ".3": "c", ".5": "rio", ".sim.5": "sim", ".7": "sh", ".8": "sh"}
 FENCE = re.compile(r"^( *)```(.*)$")
 
 
@@ -54,7 +54,7 @@ def man_blocks(path):
     section = re.split(r"^\.S[Hh] ", text[heading.end():], maxsplit=1, flags=re.M)[0]
     line = text[:heading.end()].count("\n") + 1
     found = re.findall(r"^\.(?:nf|EX|Bd .*)\n(.*?)^\.(?:fi|EE|Ed)$", section, re.M | re.S)
-    return [Block(path.name, line, MAN_LANGUAGE[path.suffix], plain(t), None) for t in found]
+    return [Block(path.name, line, MAN_LANGUAGE.get("".join(path.suffixes[-2:]), MAN_LANGUAGE[path.suffix]), plain(t), None) for t in found]
 
 
 def plain(text):
