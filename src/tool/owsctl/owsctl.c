@@ -138,12 +138,12 @@ static const struct verb verbs[] = {
          "  --merge FILE       add to that file what it has not; its names stay\n"
          "  --replace OLD=NEW  with --merge: NEW takes the place of the device OLD\n",
          .example = "-t i2c:/dev/i2c-1 scan --rio >plant.rio", .opens = true, .finds = true},
-	{"record", "[-t TARGET] [--anonymous|--i2c] [--for SECONDS] FILE [VERB ...]",
+	{"record", "[-t TARGET] [--anonymous|--i2c] [--for S] FILE [VERB ...]",
          "record what goes over a wire while a verb looks at it, for a report", verb_record,
          .options = "  -t TARGET      as for scan\n"
                     "  --anonymous    other ids in place of those of your chips\n"
                     "  --i2c          the transactions of the I2C adapter of a DS2482\n"
-                    "  --for SECONDS  do it again and again until that time is over\n"
+                    "  --for S        do it again and again until that time is over\n"
                     "  VERB           scan (if you name none), dir, read or write\n"
                     "  replay:FILE is a target of the simulator, which answers as recorded\n",
          .example = "-t i2c:/dev/i2c-1 record --anonymous trouble.trace", .opens = true,
