@@ -177,9 +177,9 @@ int ows_get_text(struct ows *h, int id, int64_t now_ns, struct ows_value *value,
  * -ESTALE: owsd has ended, was reloaded, or its heart stands still: set it again after
  * ows_reopen().
  * stamp, if not NULL, gets the number that `applied` will reach (0 for attributes); each set of a
- * handle has a greater one. The flags _DGNRESET and _WriteOneShot act when this handle sets them
- * from 0 to another value. A set that returned 0 just before an end of owsd may be lost: `applied`
- * says what was written, and ows_command() whether owsd took or refused it.
+ * handle has a greater one. The flags _DGNRESET, _ReadOneShot and _WriteOneShot act when this
+ * handle sets them from 0 to another value. A set that returned 0 just before an end of owsd may be
+ * lost: `applied` says what was written, and ows_command() whether owsd took or refused it.
  */
 int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
 int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);

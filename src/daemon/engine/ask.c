@@ -19,15 +19,16 @@
 #include "src/daemon/engine/trace.h"
 
 /*
- * Past the caches: also what is to confirm a reading that jumped, and what is compared with its
- * command, each ReadBack and while it differs.
+ * Past the caches: also what somebody asks for, what is to confirm a reading that jumped, and what
+ * is compared with its command, each ReadBack and while it differs.
  */
 static bool reads_fresh(const struct signal *s, int64_t now_ns)
 {
 	const struct signal_command *c = &s->command;
 	int64_t looked_ns = c->looked_ns > c->ended_ns ? c->looked_ns : c->ended_ns;
 
-	return s->item->fresh || s->scaling.step.held || c->doubted || !signal_reads(s) ||
+	return s->item->fresh || s->scaling.step.held || c->doubted || s->read.once ||
+	       !signal_reads(s) ||
 	       (s->item->read_back_ns &&
 	        (c->differs || now_ns - looked_ns >= s->item->read_back_ns));
 }
@@ -57,6 +58,8 @@ static bool ask_read(struct lane *lane, struct slot *slot, uint32_t row)
 	if (slot->req.fresh)
 		s->command.looked_ns = e->time.now_ns;
 	s->reading = true;
+	slot->one_shot = s->read.once;
+	s->read.once = false;
 	signal_begin(s, e->time.period);
 	return true;
 }

@@ -272,7 +272,7 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 	struct signal *s = &e->table.signals[slot->row];
 	int64_t wait_ns;
 
-	if (!signal_is_read(s)) { /* disabled meanwhile, or there is a new command */
+	if (!signal_is_read(s) && !slot->one_shot) { /* disabled, or there is a new command */
 		engine_read_at(e, s, engine_read_back_at(e, s));
 		return;
 	}
@@ -280,6 +280,9 @@ void engine_read_done(struct engine *e, struct lane *lane, const struct slot *sl
 		engine_read_next(e, lane, s, slot);
 	else
 		engine_read_at(e, s, e->time.period + (wait_ns ? engine_periods(e, wait_ns) : 1));
+	/* what was asked for meanwhile; and a request that never began is no reading */
+	if (s->read.once || (slot->one_shot && failure_of(answer->err) == FAILURE_VOID))
+		engine_read_once(e, s);
 }
 
 static void write_succeeded(struct engine *e, struct lane *lane, const struct slot *slot,

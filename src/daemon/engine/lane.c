@@ -201,6 +201,8 @@ static void disown_slot(struct lane *lane, struct slot *slot)
 		return;
 	if (slot->purpose == FOR_WRITE)
 		slot_signal(lane, slot)->command.one_shot |= slot->one_shot;
+	if (slot->purpose == FOR_READ)
+		slot_signal(lane, slot)->read.once |= slot->one_shot;
 	slot_leaves_signal(lane, slot);
 }
 

@@ -17,7 +17,7 @@ void engine_read_now(struct engine *e, struct signal *s)
 
 void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 {
-	if (!signal_reads(s) && !s->item->read_back_ns)
+	if (!signal_reads(s) && !s->item->read_back_ns && !s->read.once)
 		return;
 	if (period <= e->time.period) {
 		engine_read_now(e, s);
@@ -25,6 +25,14 @@ void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 	}
 	due_set_remove(&engine_lane(e, s)->inputs, engine_row(s));
 	due_wheel_at(&e->wheel, engine_row_wait(s, WAIT_READ), period);
+}
+
+void engine_read_once(struct engine *e, struct signal *s)
+{
+	s->read.once = true;
+	if (!s->reading)
+		engine_read_at(e, s,
+		               e->time.period + (s->attrs.pend_base == (uint32_t)e->time.period));
 }
 
 void engine_read_never(struct engine *e, struct signal *s)

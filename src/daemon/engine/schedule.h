@@ -6,6 +6,8 @@
 
 void engine_read_now(struct engine *e, struct signal *s);
 void engine_read_at(struct engine *e, struct signal *s, uint64_t period);
+/* Past the caches, whether it is read else or not, and not twice in a period. */
+void engine_read_once(struct engine *e, struct signal *s);
 void engine_read_never(struct engine *e, struct signal *s);
 /* Periods between two readings in the cycle. */
 uint64_t engine_reads_apart(const struct engine *e, const struct lane *lane,

@@ -57,7 +57,7 @@ struct slot {
 	int64_t value;               /* of a write */
 	uint32_t stamp;              /* of the command written, 0: owsd's */
 	uint32_t controller, serial; /* that gave it */
-	bool one_shot;               /* the write was that of _WriteOneShot */
+	bool one_shot;               /* that of _WriteOneShot or _ReadOneShot */
 	bool as_input;               /* a guest that goes with the priority of an input */
 	bool shown;                  /* a reading: the image has it that it is in work */
 	struct engine_guest *guest;  /* owns path and data of the request */

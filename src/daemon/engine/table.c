@@ -316,7 +316,8 @@ bool signal_settled(const struct signal *s)
 bool signal_is_read(const struct signal *s)
 {
 	/* what was never written, or is to be written, need not be compared */
-	return signal_reads(s) || (s->item->read_back_ns && s->sample.count && !signal_changed(s));
+	return signal_reads(s) || s->read.once ||
+	       (s->item->read_back_ns && s->sample.count && !signal_changed(s));
 }
 
 int64_t signal_stale_at(const struct signal *s)

@@ -35,6 +35,7 @@ struct signal_reading {
 	int64_t updated_ns;
 	int64_t begun_ns; /* of the reading that gave the last value */
 	struct retry retry;
+	bool once; /* somebody asks for a reading, past the caches */
 	/* quality and error as they stood when the target or the device was lost, if held */
 	bool held;
 	uint8_t held_quality;

@@ -101,6 +101,7 @@ static int look_up(struct signals *signals, const char *name, struct ows_id *id)
 	id->stale_after_ns = map_info(&h->map, record)->stale_after_ns;
 	h->memories[0].alarms_seen = 0;
 	h->memories[0].reset_level = h->memories[0].shot_level = false;
+	h->memories[0].read_level = false;
 	return 0;
 }
 

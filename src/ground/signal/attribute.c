@@ -13,6 +13,7 @@ const struct attribute_def attribute_table[ATTR_COUNT] = {
 	[ATTR_TRANSACTIONS] = {"_TRANSACTIONS", NULL, OWS_LARGE, true, false, false},
 	[ATTR_READ_ENABLE] = {"_ReadEnable", "_RE", OWS_BOOL, true, true, false},
 	[ATTR_WRITE_ENABLE] = {"_WriteEnable", "_WE", OWS_BOOL, true, true, false},
+	[ATTR_READ_ONE_SHOT] = {"_ReadOneShot", "_ROS", OWS_BOOL, false, true, false},
 	[ATTR_WRITE_ONE_SHOT] = {"_WriteOneShot", "_WOS", OWS_BOOL, false, true, false},
 	[ATTR_ALARM] = {"_Alarm", NULL, OWS_BOOL, true, false, false},
 	[ATTR_PER_FACTOR] = {"_PerFactor", NULL, OWS_LARGE, true, false, false},

@@ -85,6 +85,7 @@ static int64_t attribute_value(struct ows *h, struct ows_id *id, const struct ow
 		return larger(a->age_max_ns, age_ns);
 	case ATTR_RAW: /* ows_get() has it from the sample: it is a measurement */
 	case ATTR_DGNRESET:
+	case ATTR_READ_ONE_SHOT:
 	case ATTR_WRITE_ONE_SHOT:
 	case ATTR_DRIVER_DGNRESET:
 	case ATTR_COUNT:

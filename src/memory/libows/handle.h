@@ -47,7 +47,8 @@ struct ows_map {
 struct ows_memory {
 	char *name;
 	uint32_t alarms_seen;
-	bool reset_level, shot_level; /* last level set of _DGNRESET and _WriteOneShot */
+	/* last level set of _DGNRESET, _WriteOneShot and _ReadOneShot */
+	bool reset_level, shot_level, read_level;
 };
 
 struct ows_id {

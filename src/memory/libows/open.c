@@ -50,7 +50,8 @@ static int find_memory(struct ows *h, const char *signal)
 static bool needs_memory(enum attribute attribute)
 {
 	return attribute == ATTR_ALARM || attribute == ATTR_DGNRESET ||
-	       attribute == ATTR_WRITE_ONE_SHOT || attribute == ATTR_DRIVER_DGNRESET;
+	       attribute == ATTR_READ_ONE_SHOT || attribute == ATTR_WRITE_ONE_SHOT ||
+	       attribute == ATTR_DRIVER_DGNRESET;
 }
 
 static int find_resolve(struct ows *h, struct ows_id *id)

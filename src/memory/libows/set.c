@@ -90,10 +90,10 @@ static uint32_t stamp_it(struct ows *h, const struct ows_id *id)
 }
 
 /* Count a flag's edge: it acts when this handle sets it from off to on. */
-static void count_edge(bool *level, uint32_t *counter, bool on)
+static void count_edge(bool *level, uint32_t *counter, uint32_t step, bool on)
 {
 	if (on && !*level)
-		__atomic_fetch_add(counter, 1, __ATOMIC_RELEASE);
+		__atomic_fetch_add(counter, step, __ATOMIC_RELEASE);
 	*level = on;
 }
 
@@ -113,9 +113,12 @@ static void set_flag(const struct ows *h, const struct ows_id *id, bool on)
 	else if (id->attribute == ATTR_WRITE_ENABLE)
 		set_enable(&slot->write_enable, on);
 	else if (id->attribute == ATTR_WRITE_ONE_SHOT)
-		count_edge(&h->memories[id->memory].shot_level, &slot->one_shot, on);
+		count_edge(&h->memories[id->memory].shot_level, &slot->one_shot, 1, on);
+	else if (id->attribute == ATTR_READ_ONE_SHOT)
+		count_edge(&h->memories[id->memory].read_level, &slot->dgn_reset, OWS_STEP_READ,
+		           on);
 	else
-		count_edge(&h->memories[id->memory].reset_level, &slot->dgn_reset, on);
+		count_edge(&h->memories[id->memory].reset_level, &slot->dgn_reset, 1, on);
 }
 
 /* Set a number, without the ring. */

@@ -128,6 +128,7 @@ void controller_state(const struct controller_memory *memory, enum ows_state sta
 /* What owsd has seen of the edges of a slot stands in the slot: the low halves of the counters. */
 struct edges {
 	uint32_t read_enable, write_enable, one_shot, dgn_reset, acknowledged;
+	uint32_t read_once; /* dgn_reset with its halves changed over */
 };
 
 /*
@@ -141,13 +142,14 @@ static void load_edges(struct ows_command_slot *s, struct edges *now)
 	now->one_shot = word_get(&s->one_shot);
 	now->dgn_reset = word_get(&s->dgn_reset);
 	now->acknowledged = word_get(&s->acknowledged);
+	now->read_once = now->dgn_reset >> 16 | now->dgn_reset << 16;
 }
 
 static void store_seen(struct ows_command_slot *s, const struct edges *seen)
 {
 	word_set(&s->spare0[0], (seen->read_enable & 0xffff) | seen->write_enable << 16);
 	word_set(&s->spare0[1], (seen->one_shot & 0xffff) | seen->dgn_reset << 16);
-	word_set(&s->spare0[2], seen->acknowledged);
+	word_set(&s->spare0[2], (seen->acknowledged & 0xffff) | seen->read_once << 16);
 }
 
 /* A counter that is 0 was never counted. */
@@ -165,7 +167,7 @@ void controller_load(const struct controller_memory *memory, uint32_t record,
                      struct controller_command *command)
 {
 	struct ows_command_slot *s = slot_at(memory, record);
-	uint32_t enables, counts, acknowledged;
+	uint32_t enables, counts, others;
 	struct edges now;
 
 	/* The controller stores the value before the stamp: the value read here is at least as
@@ -179,12 +181,13 @@ void controller_load(const struct controller_memory *memory, uint32_t record,
 	load_edges(s, &now);
 	enables = word_get(&s->spare0[0]);
 	counts = word_get(&s->spare0[1]);
-	acknowledged = word_get(&s->spare0[2]);
+	others = word_get(&s->spare0[2]);
 	command->read_enable = enable_of(now.read_enable, enables);
 	command->write_enable = enable_of(now.write_enable, enables >> 16);
 	command->one_shot = is_edge(now.one_shot, counts);
 	command->dgn_reset = is_edge(now.dgn_reset, counts >> 16);
-	command->acknowledged = now.acknowledged != 0 && now.acknowledged != acknowledged;
+	command->acknowledged = is_edge(now.acknowledged, others);
+	command->read_once = is_edge(now.read_once, others >> 16);
 	store_seen(s, &now);
 }
 

@@ -57,7 +57,7 @@ struct controller_command {
 	uint32_t person; /* index + 1, checked; 0: for itself */
 	/* what is new since the last look, which controller_load() notes in the slot */
 	uint8_t read_enable, write_enable; /* 0 not new, 1 off, 2 on */
-	bool one_shot, dgn_reset, acknowledged;
+	bool one_shot, read_once, dgn_reset, acknowledged;
 };
 void controller_load(const struct controller_memory *memory, uint32_t record,
                      struct controller_command *command);

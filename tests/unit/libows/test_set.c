@@ -225,6 +225,12 @@ static void test_a_flag_acts_when_it_goes_from_off_to_on(void)
 	TEST_ASSERT_EQUAL(0, slot_at(HEAT)->dgn_reset);
 	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_DGNRESET"), 1, NULL));
 	TEST_ASSERT_EQUAL(1, slot_at(HEAT)->dgn_reset);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_ROS"), 1, NULL));
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "heat_ReadOneShot"), 1, NULL));
+	TEST_ASSERT_EQUAL(1 + OWS_STEP_READ, slot_at(HEAT)->dgn_reset);
+	/* of a signal of which nothing else was set */
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "room1_ROS"), 1, NULL));
+	TEST_ASSERT_EQUAL(OWS_STEP_READ, slot_at(ROOM)->dgn_reset);
 }
 
 static void test_many_values_ring_once(void)

@@ -107,16 +107,26 @@ static void test_each_edge_counts_once(void)
 	giving_enable(&slot->read_enable, false);
 	giving_enable(&slot->write_enable, true);
 	slot->one_shot++;
-	slot->dgn_reset++;
+	slot->dgn_reset += OWS_STEP_READ + 1;
 	slot->acknowledged++;
 	c = load(NUMBER);
 	TEST_ASSERT_EQUAL_UINT8(1, c.read_enable);
 	TEST_ASSERT_EQUAL_UINT8(2, c.write_enable);
-	TEST_ASSERT_TRUE(c.one_shot && c.dgn_reset && c.acknowledged);
+	TEST_ASSERT_TRUE(c.one_shot && c.dgn_reset && c.acknowledged && c.read_once);
 	c = load(NUMBER);
 	TEST_ASSERT_EQUAL_UINT8(0, c.read_enable);
 	TEST_ASSERT_EQUAL_UINT8(0, c.write_enable);
-	TEST_ASSERT_FALSE(c.one_shot || c.dgn_reset || c.acknowledged);
+	TEST_ASSERT_FALSE(c.one_shot || c.dgn_reset || c.acknowledged || c.read_once);
+	/* two counters are halves of one word */
+	slot->dgn_reset += OWS_STEP_READ;
+	c = load(NUMBER);
+	TEST_ASSERT_TRUE(c.read_once && !c.dgn_reset && !c.acknowledged);
+	slot->dgn_reset++;
+	c = load(NUMBER);
+	TEST_ASSERT_TRUE(c.dgn_reset && !c.read_once && !c.acknowledged);
+	slot->acknowledged++;
+	c = load(NUMBER);
+	TEST_ASSERT_TRUE(c.acknowledged && !c.read_once && !c.dgn_reset);
 	/* the same order once more is a new one */
 	giving_enable(&slot->read_enable, false);
 	TEST_ASSERT_EQUAL_UINT8(1, load(NUMBER).read_enable);
@@ -222,6 +232,7 @@ static void test_the_next_memory_has_what_this_one_had_and_nothing_of_it_is_new(
 	giving_set(&controller, NUMBER, 42);
 	giving_set_text(&controller, STRING, "boiler");
 	giving_slot(&controller, NUMBER)->one_shot = 3;
+	giving_slot(&controller, NUMBER)->dgn_reset = 3 * OWS_STEP_READ;
 	giving_name_person(&controller, 0, "anna");
 	giving_beat(&controller, 500);
 	controller_taken(&controller.memory, NUMBER, 1, 0);
@@ -230,7 +241,7 @@ static void test_the_next_memory_has_what_this_one_had_and_nothing_of_it_is_new(
 	controller_load(&next.memory, NUMBER, &c);
 	TEST_ASSERT_EQUAL_INT64(42, c.value);
 	TEST_ASSERT_EQUAL_UINT32(1, c.stamp);
-	TEST_ASSERT_FALSE(c.fresh || c.one_shot);
+	TEST_ASSERT_FALSE(c.fresh || c.one_shot || c.read_once);
 	TEST_ASSERT_EQUAL_UINT32(1, giving_slot(&next, NUMBER)->applied);
 	TEST_ASSERT_EQUAL_INT(0, giving_slot(&next, NUMBER)->err);
 	TEST_ASSERT_EQUAL_INT(6, controller_text(&next.memory, 4, text));

@@ -111,17 +111,19 @@ static void test_every_attribute_is_found_by_its_name_and_its_short_form(void)
 	expect("a_RE", 3, ATTR_READ_ENABLE);
 	expect("a_WE", 3, ATTR_WRITE_ENABLE);
 	expect("a_WOS", 3, ATTR_WRITE_ONE_SHOT);
+	expect("a_ROS", 3, ATTR_READ_ONE_SHOT);
 }
 
 static void test_the_table_has_the_rights_and_types_of_the_manual(void)
 {
 	TEST_ASSERT_FALSE(attribute_table[ATTR_DGNRESET].readable);
+	TEST_ASSERT_FALSE(attribute_table[ATTR_READ_ONE_SHOT].readable);
 	TEST_ASSERT_FALSE(attribute_table[ATTR_WRITE_ONE_SHOT].readable);
 	TEST_ASSERT_FALSE(attribute_table[ATTR_DRIVER_DGNRESET].readable);
 	for (int i = 0; i < ATTR_COUNT; i++) {
 		bool writable = i == ATTR_VALUE || i == ATTR_DGNRESET || i == ATTR_READ_ENABLE ||
-		                i == ATTR_WRITE_ENABLE || i == ATTR_WRITE_ONE_SHOT ||
-		                i == ATTR_DRIVER_DGNRESET;
+		                i == ATTR_WRITE_ENABLE || i == ATTR_READ_ONE_SHOT ||
+		                i == ATTR_WRITE_ONE_SHOT || i == ATTR_DRIVER_DGNRESET;
 
 		TEST_ASSERT_EQUAL_MESSAGE(writable, attribute_table[i].writable,
 		                          attribute_table[i].name);

@@ -147,6 +147,8 @@ static void look_at_signal(struct engine *e, uint32_t controller, struct signal 
 	if (c.one_shot)
 		s->command.one_shot = s->command.given && !s->command.awaited &&
 		                      config_item_takes_sets(s->item);
+	if (c.read_once)
+		engine_read_once(e, s);
 	if (c.dgn_reset)
 		signal_reset_diagnostics(s, e->time.period, e->time.now_ns);
 	if (c.acknowledged) {

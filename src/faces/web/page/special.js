@@ -16,7 +16,8 @@ const WORDS = {
 	_PendLast: "that the last one waited", _PendMax: "most of them since the reset",
 	_Period: "seconds between the last two updates", _TRANSACTIONS: "requests since the reset",
 	_Raw: "the value before Scale and Offset", _ReadEnable: "owsd reads it",
-	_WriteEnable: "owsd writes what is set", _WriteOneShot: "write the command once, at once",
+	_ReadOneShot: "read it once, at once", _WriteEnable: "owsd writes what is set",
+	_WriteOneShot: "write the command once, at once",
 	_DGNRESET: "set counters and greatest values back",
 };
 
