@@ -11,6 +11,7 @@ import signal
 import socket
 import subprocess
 import threading
+import time
 
 import owsdtest
 from mqtthouse import ABSENT, RELAY, ROOM, SENSOR, SWITCH, House, item, program
@@ -30,8 +31,17 @@ def publish(house, topic, text, *options, status=0):
     assert done.returncode == status, done
 
 
+def many(house, topic, lines):
+    subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-q", "0", "-t", topic, "-l"],
+                   input="".join(f"{line}\n" for line in lines), text=True, check=True, timeout=owsdtest.PATIENCE)
+
+
 def command(house, name, text, *options):
     publish(house, f"owsd/pi7/{name}/set", text, *options)
+
+
+def transactions(house, name):
+    return int(house.scene.get(house.daemon, f"{name}_TRANSACTIONS"))
 
 
 def journal(house):
@@ -99,6 +109,35 @@ def test_a_command_has_an_answer_and_so_has_a_question(scene):
     assert (value["v"], value["good"], value["id"]) == (21.5, True, "a1") and value["t"], value
     publish(house, "owsd/pi7/nobody/get", "")
     until(lambda: json.loads(house.listener.last("owsd/pi7/nobody/result")) == {"why": "there is no such signal"}, 20, "no value")
+
+
+def test_a_signal_is_read_when_somebody_asks(scene):
+    slow = dict(PerFactor=raw("20000"))
+    house = ready(scene, {**ROOM, **slow}, RELAY)
+    first = house.arrives("room", lambda m: m["good"] and m["t"])
+    publish(house, "owsd/pi7/room/read", '{"id":7}')
+    until(lambda: json.loads(house.listener.last("owsd/pi7/room/result") or "{}") == {"taken": True, "id": 7}, 20, house.face.log)
+    # the same value, published for its time is another
+    house.arrives("room", lambda m: m["good"] and m["t"] > first["t"])
+    # a flood costs one reading in a period of 0.05 s
+    reads, began = transactions(house, "room"), time.monotonic()
+    many(house, "owsd/pi7/room/read", ["{}"] * 2000)
+    logged(house.face, "command to room refused: more than 50 commands in a second")
+    until(lambda: transactions(house, "room") > reads, 20, "it is read")
+    reads = transactions(house, "room") - reads
+    assert reads <= 20 * (time.monotonic() - began) + 2, reads
+    # by hand it is a special signal
+    now = transactions(house, "room")
+    assert scene.owsctl(house.daemon, "set", "room_ReadOneShot", "1").returncode == 0
+    until(lambda: transactions(house, "room") > now, 20, "it is read")
+    # who may not command has nothing read
+    house.daemon.config.write_text(house.text({**ROOM, **slow}, RELAY, Write=raw("off")))
+    assert scene.owsctl(house.daemon, "reload").returncode == 0
+
+    def refused():
+        publish(house, "owsd/pi7/room/read", "")
+        return "Write is off" in house.listener.last("owsd/pi7/room/result")
+    until(refused, 20, house.face.log, step=0.5)
 
 
 def test_by_mqtt_5_who_asks_names_the_topic_of_the_answer(scene):
@@ -179,6 +218,23 @@ def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
     until(lambda: "rename by user" in writer.log() and "for mqtt:127.0.0.1" in writer.log(), 20, writer.log)
 
 
+def test_a_flood_of_lists_and_renames_is_cut(scene):
+    house = ready(scene, Rename=raw("on"))
+    house.arrives("room", lambda m: m["good"])
+    for topic, why in (("chip/get", "more than one list in a second: try again"),
+                       ("room/rename", "more than one rename in 10 seconds: try again")):
+        result = f"owsd/pi7/{topic.split('/')[0]}/result"
+        many(house, f"owsd/pi7/{topic}", ["hall"] * 200)
+        until(lambda r=result, w=why: w in (house.listener.last(r) or ""), 20, house.face.log)
+    # the list costs no more than it says, and is there again
+    assert "devices" not in json.loads(house.listener.last("owsd/pi7/chip/result"))
+
+    def listed():
+        publish(house, "owsd/pi7/chip/get", "")
+        return "devices" in json.loads(house.listener.last("owsd/pi7/chip/result"))
+    until(listed, 20, house.face.log, step=1.2)
+
+
 def test_without_rename_a_broker_that_sends_one_unasked_is_refused(scene):
     topic = b"owsd/pi7/room/rename"
 
@@ -249,9 +305,7 @@ def test_a_retained_command_of_last_week_and_one_of_now_are_refused(scene):
 
 def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
     house = ready(scene, ROOM, DIAL)
-    lines = "".join(f"{n % 200}\n" for n in range(5000))
-    subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-q", "0", "-t",
-                    "owsd/pi7/dial/set", "-l"], input=lines, text=True, check=True, timeout=owsdtest.PATIENCE)
+    many(house, "owsd/pi7/dial/set", [n % 200 for n in range(5000)])
     logged(house.face, "more than 50 commands in a second")
     until(lambda: (house.last("health") or {}).get("commands_refused", 0) > 1000, 30,
           lambda: house.last("health"))

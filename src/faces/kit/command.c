@@ -9,10 +9,12 @@
 #include "src/faces/show/names.h"
 #include "src/faces/show/range.h"
 #include "src/ground/service/command_age.h"
+#include "src/ground/signal/attribute.h"
 #include "src/ground/signal/error.h"
 #include "src/ground/signal/value.h"
 
 #define OPEN_NS NS_PER_S
+#define SPECIAL_NAME (SIGNAL_NAME_MAX + 32)
 
 static bool is_old(const struct face_command *command)
 {
@@ -21,6 +23,7 @@ static bool is_old(const struct face_command *command)
 
 int face_command_find(struct ows *h, const struct face_command *command, struct ows_info *info)
 {
+	char special[SPECIAL_NAME];
 	struct ows_daemon daemon;
 	int id, err;
 
@@ -31,9 +34,19 @@ int face_command_find(struct ows *h, const struct face_command *command, struct 
 		return -ESTALE;
 	if (!names_info(h, command->instance, command->name, info))
 		return -ENOENT;
-	id = ows_find(h, command->name);
+	snprintf(special, sizeof(special), "%s%s", info->name,
+	         attribute_table[ATTR_READ_ONE_SHOT].name);
+	id = ows_find(h, command->reads ? special : command->name);
 	err = id < 0 ? id : ows_for(h, command->person);
 	return err ? err : id;
+}
+
+/* The flag acts when it goes from 0 to 1, whatever this handle has set before. */
+static int read_once(struct ows *h, int id)
+{
+	int err = ows_set_integer(h, id, 0, NULL);
+
+	return err ? err : ows_set_integer(h, id, 1, NULL);
 }
 
 int face_command_set(struct ows *h, const struct face_command *command, int id,
@@ -46,6 +59,8 @@ int face_command_set(struct ows *h, const struct face_command *command, int id,
 	/* to connect to owsd may have taken long */
 	if (is_old(command))
 		return -ETIME;
+	if (command->reads)
+		return read_once(h, id);
 	if (!command->text)
 		return -EINVAL;
 	if (type == OWS_STRING)

@@ -12,6 +12,7 @@ struct face_command {
 	const char *program, *instance; /* of the face */
 	const char *name;               /* of the signal */
 	const char *text;               /* what to set; NULL: nothing */
+	bool reads;                     /* owsd is to read it, and nothing is set */
 	const char *person;             /* for whom, as ows_for() takes it */
 	int64_t came_ns;                /* it came later than that: face_came() */
 };
@@ -21,7 +22,7 @@ struct face_command {
  * ended or reloaded, else as ows_find(). What is done then is done for the person.
  */
 int face_command_find(struct ows *h, const struct face_command *command, struct ows_info *info);
-/* Set it. As ows_set(); -ETIME as above. */
+/* Set it, or have it read. As ows_set(); -ETIME as above. */
 int face_command_set(struct ows *h, const struct face_command *command, int id,
                      const struct ows_info *info, uint32_t *stamp);
 

@@ -26,6 +26,14 @@ static bool will(void *ctx, bool ending, const struct outlet *to)
 	return put;
 }
 
+static void listen_below(struct mqtt *m, const char *below)
+{
+	char topic[TOPIC_SIZE];
+
+	snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix, below);
+	client_subscribe(&m->broker, topic);
+}
+
 static void on_connected(void *ctx)
 {
 	struct mqtt *m = ctx;
@@ -49,21 +57,18 @@ static void on_connected(void *ctx)
 			           m->stream.host);
 	}
 	/* without Write they are refused, with a reason */
-	if (m->stream.profile->listen_write)
+	if (m->stream.profile->listen_write) {
 		m->stream.profile->listen_write(&m->stream, topic);
-	else
-		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
-		         m->options.profile->commands);
-	client_subscribe(&m->broker, topic);
+		client_subscribe(&m->broker, topic);
+	} else {
+		listen_below(m, m->options.profile->commands);
+	}
 	if (m->stream.profile->asks) {
-		snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix,
-		         m->options.profile->asks);
-		client_subscribe(&m->broker, topic);
+		listen_below(m, m->options.profile->asks);
+		listen_below(m, "+/" TOPIC_READ);
 	}
-	if (m->stream.profile->asks && m->options.rename) {
-		snprintf(topic, sizeof(topic), "%.300s/+/" TOPIC_RENAME, m->options.prefix);
-		client_subscribe(&m->broker, topic);
-	}
+	if (m->stream.profile->asks && m->options.rename)
+		listen_below(m, "+/" TOPIC_RENAME);
 	m->health_ns = m->sweep_ns = 0;
 	m->sweep = true;
 	stream_begin(&m->stream);
@@ -75,7 +80,7 @@ static bool asks(const char *topic)
 	const char *last = strrchr(topic, '/');
 
 	return last && (!strcmp(last, "/set") || !strcmp(last, "/on") || !strcmp(last, "/get") ||
-	                !strcmp(last, "/" TOPIC_RENAME));
+	                !strcmp(last, "/" TOPIC_READ) || !strcmp(last, "/" TOPIC_RENAME));
 }
 
 /*
@@ -100,7 +105,7 @@ static void answer(struct mqtt *m, struct json *json, const struct broker_messag
 		client_answer(&m->broker, reply, s->text, s->len, message);
 }
 
-static void mqtt_command(struct mqtt *m, const char *name, bool known, bool plain,
+static void mqtt_command(struct mqtt *m, const char *name, bool known, enum commands_form form,
                          const struct broker_message *message)
 {
 	struct broker_message one = *message;
@@ -109,17 +114,20 @@ static void mqtt_command(struct mqtt *m, const char *name, bool known, bool plai
 	if (!m->options.write)
 		one.fault = "Write is off in the block Mqtt: set it to on there, and reload owsd";
 	snprintf(place, sizeof(place), "mqtt:%s", m->options.ways[m->broker.way].host);
-	if (commands_take(&m->commands, name, known, plain, &one, place, ows_now()) == -ETIME)
+	if (commands_take(&m->commands, name, known, form, &one, place, ows_now()) == -ETIME)
 		broker_forget(&m->broker);
 }
 
 static void on_command(struct mqtt *m, const char *name, const struct row *row,
-                       const struct broker_message *message)
+                       enum commands_form form, const struct broker_message *message)
 {
 	const struct commands *c = &m->commands;
 	struct json json;
 
-	mqtt_command(m, name, row, row && row->info.type == OWS_STRING, message);
+	mqtt_command(m, name, row, form, message);
+	/* what is read then is published though only its time may be new */
+	if (form == COMMANDS_READ && row && !*c->why)
+		m->stream.rows[row - m->stream.rows].print = 0;
 	if (!m->stream.profile->asks)
 		return;
 	stream_message(&m->stream, &json);
@@ -144,6 +152,19 @@ static void answer_devices(struct mqtt *m, const struct ask *ask, char *listing,
 	json_bool(&json, "searched", listing);
 	if (why)
 		json_string(&json, "why", why);
+	ask_id_json(&json, ask);
+	answer(m, &json, message);
+}
+
+/* A question that has no more than this for an answer. */
+static void answer_why(struct mqtt *m, const struct ask *ask, const char *why,
+                       const struct broker_message *message)
+{
+	struct json json;
+
+	stream_message(&m->stream, &json);
+	json_object(&json, NULL);
+	json_string(&json, "why", why);
 	ask_id_json(&json, ask);
 	answer(m, &json, message);
 }
@@ -216,19 +237,26 @@ static const char *errand_fault(int err, enum errand_kind kind)
 	return "owsd gave no list of what is on its wires";
 }
 
+/* Each list costs owsd a directory of all devices, each rename a file and a reload. */
+static const struct credit_rate lists_rate = {NS_PER_S, 10};
+static const struct credit_rate renames_rate = {10 * NS_PER_S, 50};
+
 /* Which devices there are: those of the table at least, if owsd gives no list of all. */
 static void on_devices(struct mqtt *m, const struct broker_message *message)
 {
 	unsigned char request[DEVICES_REQUEST];
-	int len = devices_request(request);
-	int err = errand_begin(&m->errand, ERRAND_DEVICES, m->broker.face, "sock", request,
-	                       (size_t)len, TOPIC_CHIP, message);
+	int len = devices_request(request), err;
 	struct ask ask;
 
-	if (!err)
-		return;
 	ask_read(&ask, message->text, message->len, false);
-	answer_devices(m, &ask, NULL, errand_fault(err, ERRAND_DEVICES), message);
+	if (!credit_spend(&m->lists, &lists_rate, ows_now())) {
+		answer_why(m, &ask, "more than one list in a second: try again", message);
+		return;
+	}
+	err = errand_begin(&m->errand, ERRAND_DEVICES, m->broker.face, "sock", request, (size_t)len,
+	                   TOPIC_CHIP, message);
+	if (err)
+		answer_devices(m, &ask, NULL, errand_fault(err, ERRAND_DEVICES), message);
 }
 
 /* Another name for a signal: the identity stays, and what hangs on it. */
@@ -253,6 +281,8 @@ static void on_rename(struct mqtt *m, const char *name, const struct row *row,
 	               *message->person ? "" : "mqtt:", BROKER_PERSON,
 	               *message->person ? message->person : host,
 	               strlen(name) + 1 + strlen(ask.value), name, ask.value);
+	if (!why && !credit_spend(&m->renames, &renames_rate, ows_now()))
+		why = "more than one rename in 10 seconds: try again";
 	if (!why) {
 		err = errand_begin(&m->errand, ERRAND_RENAME, m->broker.face, "config", order,
 		                   (size_t)len, name, message);
@@ -277,14 +307,15 @@ static void on_question(struct mqtt *m, const char *name, const struct row *row,
 		return;
 	}
 	ask_read(&ask, message->text, message->len, false);
+	if (!row || !look_is_current(m->broker.face)) {
+		answer_why(m, &ask,
+		           row ? "owsd is away, or reloads: try again" : "there is no such signal",
+		           message);
+		return;
+	}
 	stream_message(s, &json);
 	json_object(&json, NULL);
-	if (row && look_is_current(m->broker.face))
-		plain_value_json(&json, s, &s->rows[row - s->rows]);
-	else
-		json_string(&json, "why",
-		            row ? "owsd is away, or reloads: try again"
-		                : "there is no such signal");
+	plain_value_json(&json, s, &s->rows[row - s->rows]);
 	ask_id_json(&json, &ask);
 	answer(m, &json, message);
 }
@@ -303,7 +334,7 @@ static void mqtt_take(void *ctx, const char *name, const char *text, const char 
 	one.text = text;
 	one.len = strlen(text);
 	one.fault = fault;
-	mqtt_command(several->m, name, true, true, &one);
+	mqtt_command(several->m, name, true, COMMANDS_TEXT, &one);
 }
 
 static void on_commands(struct mqtt *m, const struct broker_message *message)
@@ -349,7 +380,11 @@ static void on_message(void *ctx, const struct broker_message *message)
 	}
 	ask = stream_command(&m->stream, message->topic, &row, name);
 	if (ask == STREAM_SET)
-		on_command(m, name, row, message);
+		on_command(m, name, row,
+		           row && row->info.type == OWS_STRING ? COMMANDS_TEXT : COMMANDS_VALUE,
+		           message);
+	if (ask == STREAM_READ)
+		on_command(m, name, row, COMMANDS_READ, message);
 	if (ask == STREAM_GET)
 		on_question(m, name, row, message);
 	if (ask == STREAM_RENAME)

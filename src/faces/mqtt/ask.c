@@ -40,7 +40,8 @@ void ask_id_json(struct json *json, const struct ask *ask)
 void ask_answer_json(struct json *json, const struct ask *ask, const char *why)
 {
 	json_bool(json, "taken", !why);
-	json_string(json, "set", ask->value);
+	if (ask->value)
+		json_string(json, "set", ask->value);
 	if (why)
 		json_string(json, "why", why);
 	ask_id_json(json, ask);

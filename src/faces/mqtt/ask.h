@@ -11,7 +11,7 @@
 #define ASK_MOST 1024 /* bytes of a message */
 
 struct ask {
-	const char *value;            /* what is to be set; "": nothing */
+	const char *value; /* what is to be set; "": nothing; NULL: no value was asked for */
 	const struct body_member *id; /* what the sender calls it; NULL: nothing */
 	struct body body;
 	char text[ASK_MOST + 1];

@@ -14,6 +14,9 @@
 
 #define UNDER_WAY_NS (10 * NS_PER_S) /* a command is written by then, or it failed */
 
+/* Of commands to one signal; refusal_of() names it. */
+static const struct credit_rate commands_rate = {NS_PER_S / 50, 100};
+
 void commands_tell(struct commands *c, int64_t now_ns)
 {
 	for (size_t i = 0; i < COMMANDS_CAUSES; i++) {
@@ -105,8 +108,10 @@ static int fit(void *ctx, int id, const struct ows_info *info, struct face_comma
 	static char number[VALUE_TEXT_MAX];
 	struct credit *credit = credit_of(ctx, id);
 
-	if (!credit || !credit_spend(credit, ows_now()))
+	if (!credit || !credit_spend(credit, &commands_rate, ows_now()))
 		return credit ? -EDQUOT : -ENOMEM;
+	if (command->reads)
+		return 0;
 	command->text = number_of(ctx, id, credit->given_ns, info, command->text, number);
 	if (!command->text)
 		return -ENODATA;
@@ -146,25 +151,30 @@ static const char *refusal_of(int err)
 	}
 }
 
-int commands_take(struct commands *c, const char *name, bool known, bool plain,
+int commands_take(struct commands *c, const char *name, bool known, enum commands_form form,
                   const struct broker_message *message, const char *place, int64_t now_ns)
 {
-	const char *wrong = ask_read(&c->ask, message->text, message->len, plain);
-	const char *fault = message->fault ? message->fault : commands_fault(message);
+	const char *wrong = ask_read(&c->ask, message->text, message->len, form == COMMANDS_TEXT);
+	const char *fault = message->fault;
+	bool reads = form == COMMANDS_READ;
 	char person[BROKER_PERSON], words[FACE_REFUSAL];
 	struct face_command command = {.program = c->program,
 	                               .instance = c->instance,
 	                               .name = name,
-	                               .text = c->ask.value,
+	                               .text = reads ? NULL : c->ask.value,
+	                               .reads = reads,
 	                               .person = person,
 	                               .came_ns = message->came_ns};
 	struct ows_info info = {0};
 	int err;
 
 	c->why[0] = '\0';
+	if (!fault && (message->len || !reads))
+		fault = commands_fault(message);
 	fault = fault ? fault : wrong;
-	if (!fault && !*c->ask.value)
+	if (!fault && !reads && !*c->ask.value)
 		fault = "it has no \"v\"";
+	c->ask.value = reads ? NULL : c->ask.value;
 	if (fault) {
 		commands_refuse(c, name, fault, now_ns);
 		return -EINVAL;
@@ -184,7 +194,10 @@ int commands_take(struct commands *c, const char *name, bool known, bool plain,
 	}
 	c->taken++;
 	c->trouble[0] = '\0';
-	log_info(c->log, "%s set to %.60s for %s", name, command.text, person);
+	if (reads)
+		log_info(c->log, "%s is read for %s", name, person);
+	else
+		log_info(c->log, "%s set to %.60s for %s", name, command.text, person);
 	return 0;
 }
 

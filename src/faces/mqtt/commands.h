@@ -45,13 +45,19 @@ struct commands {
 	int64_t trouble_ns;         /* when it was */
 };
 
+/* What the text of a command is. */
+enum commands_form {
+	COMMANDS_VALUE, /* the value, or JSON that has it */
+	COMMANDS_TEXT,  /* the value: no text of it is JSON */
+	COMMANDS_READ,  /* nothing, or JSON without a value: owsd is to read the signal */
+};
+
 /*
- * The command of a message for the signal name; known: it is one of those that are published;
- * plain: no text of it is JSON. place: for whom, if the message does not name one. Waits for owsd
- * when it connects, two seconds at most, once a second. 0, or why it was refused; -ETIME: it may be
- * too old.
+ * The command of a message for the signal name; known: it is one of those that are published.
+ * place: for whom, if the message does not name one. Waits for owsd when it connects, two seconds
+ * at most, once a second. 0, or why it was refused; -ETIME: it may be too old.
  */
-int commands_take(struct commands *c, const char *name, bool known, bool plain,
+int commands_take(struct commands *c, const char *name, bool known, enum commands_form form,
                   const struct broker_message *message, const char *place, int64_t now_ns);
 /* What is wrong with the message itself, as one that asks for a change; NULL: nothing. */
 const char *commands_fault(const struct broker_message *message);

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* How many commands of a topic may come: a flood of one starves no other. */
+/* How often something may be asked for: a flood of one starves no other. */
 #pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define CREDIT_A_SECOND 50
-#define CREDIT_BURST 100
+/* So many at once, and then one in each cost_ns. */
+struct credit_rate {
+	int64_t cost_ns;
+	int burst;
+};
 
 /* Of one topic; all zero: nothing has come yet. */
 struct credit {
@@ -15,4 +18,4 @@ struct credit {
 };
 
 /* Is there credit for one more? Then it is spent. It grows with time, up to that of a burst. */
-bool credit_spend(struct credit *credit, int64_t now_ns);
+bool credit_spend(struct credit *credit, const struct credit_rate *rate, int64_t now_ns);

@@ -11,6 +11,7 @@
 #include "src/faces/kit/wall_clock.h"
 #include "src/faces/mqtt/broker.h"
 #include "src/faces/mqtt/commands.h"
+#include "src/faces/mqtt/credit.h"
 #include "src/faces/mqtt/errand.h"
 #include "src/faces/mqtt/past.h"
 #include "src/faces/mqtt/stream.h"
@@ -21,6 +22,7 @@ struct mqtt {
 	struct broker broker;
 	struct commands commands;
 	struct errand errand;
+	struct credit lists, renames;
 	struct past past;
 	struct wall_clock clock;
 	int bdseq;               /* of the first session of this process */

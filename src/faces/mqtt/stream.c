@@ -411,6 +411,8 @@ enum stream_ask stream_command(const struct stream *s, const char *topic, const 
 		ask = STREAM_SET;
 	if (last && asks && !strcmp(last, strrchr(asks, '/')))
 		ask = STREAM_GET;
+	if (last && asks && !strcmp(last + 1, TOPIC_READ))
+		ask = STREAM_READ;
 	if (last && asks && !strcmp(last + 1, TOPIC_RENAME))
 		ask = STREAM_RENAME;
 	if (!ask)

@@ -179,8 +179,8 @@ struct profile {
 	/* Below the prefix, with wildcards; the last level has none. NULL: listen_write, take */
 	const char *commands;
 	/*
-	 * Likewise, where values are asked for, and TOPIC_RENAME beside it; NULL: nowhere, and no
-	 * command has an answer
+	 * Likewise, where values are asked for, and TOPIC_READ and TOPIC_RENAME beside it; NULL:
+	 * nowhere, and no command has an answer
 	 */
 	const char *asks;
 	/* Where retained messages may stand, likewise; NULL at the end, or in its place: nowhere */
@@ -242,8 +242,9 @@ struct chip *stream_chip(const struct stream *s, const char *id);
 const struct row *stream_row(const struct stream *s, const char *topic, size_t len);
 enum stream_ask {
 	STREAM_NO_ASK,
-	STREAM_SET, /* a command */
-	STREAM_GET, /* a question for the value */
+	STREAM_SET,  /* a command */
+	STREAM_GET,  /* a question for the value */
+	STREAM_READ, /* a command: owsd is to read it now */
 	STREAM_RENAME,
 };
 /* What is topic of? *row is whose, or NULL; name gets what to call it. */

@@ -12,6 +12,7 @@
 #define TOPIC_HEALTH "health"
 #define TOPIC_CHIP "chip"
 #define TOPIC_RESULT "result"   /* beside commands */
+#define TOPIC_READ "read"       /* likewise */
 #define TOPIC_RENAME "rename"   /* likewise */
 #define TOPIC_PROBLEM "problem" /* below a chip */
 

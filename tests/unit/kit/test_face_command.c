@@ -68,6 +68,22 @@ static void test_a_command_of_now_is_set_and_one_that_waited_is_not(void)
 	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, RELAY + 1).value);
 }
 
+static void test_a_signal_is_read_each_time_that_somebody_asks(void)
+{
+	const struct ows_command_slot *slot = instance_slot(&in, 0, RELAY + 1);
+
+	command.reads = true;
+	command.text = NULL;
+	TEST_ASSERT_EQUAL_INT(0, give());
+	TEST_ASSERT_EQUAL_UINT32(OWS_STEP_READ, slot->dgn_reset);
+	TEST_ASSERT_EQUAL_INT(0, give());
+	TEST_ASSERT_EQUAL_UINT32(2 * OWS_STEP_READ, slot->dgn_reset);
+	TEST_ASSERT_EQUAL_UINT32(0, slot->stamp);
+	command.came_ns = ows_now() - COMMAND_OLD_NS - 1;
+	TEST_ASSERT_EQUAL_INT(-ETIME, give());
+	TEST_ASSERT_EQUAL_UINT32(2 * OWS_STEP_READ, slot->dgn_reset);
+}
+
 static void test_what_is_no_value_or_no_signal_is_refused(void)
 {
 	static const char *const wrong[] = {"", "2", "toggle", "1.5", "nan", NULL};
@@ -175,6 +191,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_command_of_now_is_set_and_one_that_waited_is_not);
+	RUN_TEST(test_a_signal_is_read_each_time_that_somebody_asks);
 	RUN_TEST(test_what_is_no_value_or_no_signal_is_refused);
 	RUN_TEST(test_a_face_may_fit_a_command_to_its_signal_or_refuse_it);
 	RUN_TEST(test_the_way_to_owsd_is_found_again_and_not_tried_all_the_time);

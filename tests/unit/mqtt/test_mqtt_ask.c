@@ -71,6 +71,13 @@ static void test_an_object_has_the_value_and_what_the_sender_calls_it(void)
 	}
 }
 
+static void test_who_asks_for_no_value_is_answered_without_one(void)
+{
+	TEST_ASSERT_NULL(read_text("{\"id\":7}"));
+	ask.value = NULL;
+	TEST_ASSERT_EQUAL_STRING("{\"taken\":true,\"id\":7}", answer(NULL));
+}
+
 static void test_what_begins_as_an_object_and_is_none_is_refused(void)
 {
 	static char text[ASK_MOST + 2];
@@ -91,6 +98,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_text_is_the_value_itself);
 	RUN_TEST(test_an_object_has_the_value_and_what_the_sender_calls_it);
+	RUN_TEST(test_who_asks_for_no_value_is_answered_without_one);
 	RUN_TEST(test_what_begins_as_an_object_and_is_none_is_refused);
 	return UNITY_END();
 }
