@@ -27,6 +27,10 @@ _owsctl() {
 		words=$(owsctl enable --dry-run '' 2>&1 | sed -n 's/.*there are: //p')
 	elif [[ $verb = record ]]; then
 		words='scan dir read write'
+	elif [[ $verb = convert ]]; then
+		compopt -o filenames 2>/dev/null
+		mapfile -t COMPREPLY < <(compgen -f -- "$cur")
+		return
 	elif [[ $verb = config ]]; then
 		case $((COMP_CWORD - at)) in
 		1)

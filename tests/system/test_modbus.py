@@ -240,7 +240,7 @@ def test_owsctl_shows_the_addresses_as_table_csv_json_and_as_the_file_of_map(sce
 
     def owsctl(*arguments):
         return scene.owsctl(daemon, *arguments, "-d", scene.path / "state")
-    assert "has owsd-modbus run for" in owsctl("modbus-map").stderr
+    assert "has owsd-modbus run" in owsctl("modbus-map").stderr
     face = serve(scene, daemon)
     with Client(port) as plc:
         plc.becomes(3, GOOD)

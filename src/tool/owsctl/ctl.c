@@ -107,6 +107,7 @@ static const struct option *longs_of(const char *options)
 		{"csv", no_argument, NULL, 'C'},
 		{"influx", no_argument, NULL, 'I'},
 		{"keep", no_argument, NULL, 'k'},
+		{"mbdrv", no_argument, NULL, 'm'},
 		{"directory", required_argument, NULL, 'd'},
 		{"dry-run", no_argument, NULL, 'D'},
 		{"fix", no_argument, NULL, 'F'},

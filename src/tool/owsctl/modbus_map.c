@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/faces/modbus/map.h"
 #include "src/faces/show/json.h"
 #include "src/ground/signal/value.h"
-#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/modbus_map.h"
 #include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
 
@@ -104,11 +103,24 @@ static void print_map(const struct map *map, struct ows *h, enum form form)
 	table_free(&table);
 }
 
+/* absent: what helps if it is not there; NULL: it need not be. */
+static int read_file(const char *path, const char *absent, struct map *map)
+{
+	unsigned line;
+	int err = map_read(map, path, &line);
+
+	if (err == -ENOENT)
+		return absent ? ctl_fail("there is no %s: %s", path, absent) : CTL_DONE;
+	if (err == -EINVAL)
+		return ctl_fail("%s:%u: no place and identity", path, line);
+	return err ? ctl_fail("%s: %s", path, strerror(-err)) : CTL_DONE;
+}
+
 /* directory NULL: where owsd-modbus keeps it. */
-static int read_map(const struct ctl *ctl, const char *directory, struct map *map)
+static int read_map(const struct ctl *ctl, const char *directory, const char *absent,
+                    struct map *map)
 {
 	char path[MAP_PATH];
-	unsigned line;
 	int err = 0;
 
 	if (!directory)
@@ -117,13 +129,15 @@ static int read_map(const struct ctl *ctl, const char *directory, struct map *ma
 		err = -ENAMETOOLONG;
 	if (err)
 		return ctl_fail("the map of %s: %s", ctl->instance, strerror(-err));
-	err = map_read(map, path, &line);
-	if (err == -ENOENT)
-		return ctl_fail("there is no %s: has owsd-modbus run for %s, with a Modbus block?",
-		                path, ctl->instance);
-	if (err == -EINVAL)
-		return ctl_fail("%s:%u: no place and identity", path, line);
-	return err ? ctl_fail("%s: %s", path, strerror(-err)) : CTL_DONE;
+	return read_file(path, absent, map);
+}
+
+int modbus_map_given(const struct ctl *ctl, const char *fixed, const char *directory,
+                     struct map *map)
+{
+	int status = fixed ? read_file(fixed, "the key Map names it", map) : CTL_DONE;
+
+	return status ? status : read_map(ctl, directory, NULL, map);
 }
 
 static void find_signals(struct map *map, struct ows *h)
@@ -156,7 +170,8 @@ int verb_modbus_map(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "--csv, --keep and --json exclude each other");
 	if (ctl->json)
 		form = FORM_JSON;
-	status = read_map(ctl, directory, &map);
+	status = read_map(ctl, directory,
+	                  "has owsd-modbus run for this instance, with a Modbus block?", &map);
 	if (status)
 		return status;
 	h = ctl_open(ctl, OWS_READ);

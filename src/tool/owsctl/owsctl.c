@@ -99,6 +99,11 @@ static const struct verb verbs[] = {
                     "  --csv   a line for each place, for other programs; --json too\n"
                     "  --keep  as the file that the key Map of the Modbus block names\n",
          .example = "modbus-map --csv", .finds = true},
+	{"convert", "[-d DIR] --mbdrv FILE",
+         "the items of a configuration for REXYGEN's Modbus driver", verb_convert,
+         .options = "  -d DIR   where owsd-modbus keeps the map (--directory)\n"
+                    "  --mbdrv  as the .rio file of MbDrv, which asks owsd-modbus\n",
+         .example = "convert --mbdrv plant.rio"},
 	{"instances", "", "list the owsd that run here, and those that have run", verb_instances,
          .example = "instances"},
 	{"remove", "NAME...", "remove the files of an instance that has ended", verb_remove,

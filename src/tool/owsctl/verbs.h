@@ -17,6 +17,7 @@ int verb_journal(struct ctl *ctl, int argc, char **argv);
 int verb_stats(struct ctl *ctl, int argc, char **argv);
 int verb_metrics(struct ctl *ctl, int argc, char **argv);
 int verb_modbus_map(struct ctl *ctl, int argc, char **argv);
+int verb_convert(struct ctl *ctl, int argc, char **argv);
 int verb_instances(struct ctl *ctl, int argc, char **argv);
 int verb_remove(struct ctl *ctl, int argc, char **argv);
 int verb_reload(struct ctl *ctl, int argc, char **argv);
