@@ -45,6 +45,34 @@ enum exception writing_refusal(int err)
 	}
 }
 
+static int64_t longest_delay_ns(const struct config *config)
+{
+	int64_t longest_ns = 0;
+
+	for (size_t i = 0; i < config->item_count; i++)
+		longest_ns = later_ns(longest_ns, config->items[i].safe_delay_ns);
+	return longest_ns;
+}
+
+/*
+ * The one that was silent for longest, if owsd has lost it: its outputs are at SafeValue, and the
+ * goodbye of a way that is closed leaves none in force. NULL: all places are needed.
+ */
+static struct writer *find_lost(struct writing *w)
+{
+	int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+	struct writer *lost = NULL;
+
+	for (unsigned i = 0; i < WRITERS; i++)
+		if (!lost || w->writers[i].heard_ns < lost->heard_ns)
+			lost = &w->writers[i];
+	if (lost->promised_ns &&
+	    now_ns - lost->heard_ns <=
+	            NS_PER_S + later_ns(lost->promised_ns, longest_delay_ns(w->face->config)))
+		return NULL;
+	return lost;
+}
+
 static struct writer *find(struct writing *w, const struct listen_address *from, bool new)
 {
 	struct listen_address host = *from;
@@ -56,8 +84,11 @@ static struct writer *find(struct writing *w, const struct listen_address *from,
 			free = free ? free : &w->writers[i];
 		else if (listen_same(&w->writers[i].from, &host))
 			return &w->writers[i];
+	if (new && !free)
+		free = find_lost(w);
 	if (!new || !free)
 		return NULL;
+	face_way_close(&free->way);
 	*free = (struct writer){.from = host, .used = true};
 	return free;
 }
@@ -78,10 +109,12 @@ static void beat(struct writing *w, struct writer *writer)
 	int64_t beat_ns = w->face->config->modbus.beat_ns, now_ns = ows_now();
 	int err;
 
+	writer->heard_ns = clock_ns(CLOCK_MONOTONIC);
 	if (!writer->way.h || !beat_ns || now_ns < writer->again_ns)
 		return;
 	err = ows_beat(writer->way.h, (uint32_t)(beat_ns / NS_PER_MS));
 	writer->again_ns = 0;
+	writer->promised_ns = beat_ns;
 	/* owsd has reloaded, or was started again */
 	if (err == -ESTALE && ows_reopen(writer->way.h))
 		writer->again_ns = now_ns + AGAIN_NS;

@@ -10,12 +10,14 @@
 #include "src/faces/kit/command.h"
 #include "src/faces/modbus/answer.h"
 
-#define WRITERS 16 /* addresses that have commanded; their places are not given to others */
+#define WRITERS 16 /* addresses that command at a time */
 
 struct writer {
 	struct listen_address from; /* without a port */
 	struct face_way way;
-	int64_t again_ns; /* when to open the way again; 0: it is open */
+	int64_t again_ns;    /* when to open the way again; 0: it is open */
+	int64_t heard_ns;    /* CLOCK_MONOTONIC: time asleep is no silence */
+	int64_t promised_ns; /* to owsd, by its last beat */
 	bool used, by_register;
 };
 

@@ -92,11 +92,38 @@ static void test_what_is_refused_is_so_by_the_exception_that_fits(void)
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_FAILURE, writing_refusal(-EACCES));
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_refusal(-EROFS));
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_refusal(-ESTALE));
+}
+
+static void test_an_address_that_owsd_has_lost_gives_its_place_to_another(void)
+{
+	struct config_item slow = {.safe_delay_ns = 20 * S};
+	struct controller_beat beat;
+
 	for (uint8_t i = 0; i < WRITERS; i++) {
 		other.bytes[3] = (uint8_t)(100 + i);
-		TEST_ASSERT_EQUAL_INT(i == WRITERS - 1 ? EXCEPTION_BUSY : EXCEPTION_NONE,
+		TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE,
 		                      writing_set(&w, "pump", 1, &other, ows_now()));
 	}
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &plc, ows_now()));
+	w.writers[7].heard_ns -= 10 * S;
+	/* its outputs wait for SafeDelay */
+	config.items = &slow;
+	config.item_count = 1;
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &plc, ows_now()));
+	config.item_count = 0;
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_UINT(WRITERS + 1, instance_controllers(&in));
+	controller_beat(instance_controller(&in, 7), &beat);
+	TEST_ASSERT_TRUE(beat.goodbye);
+	other.bytes[3] = 107; /* it is back, and no place is free */
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &other, ows_now()));
+	other.bytes[3] = 108;
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &other, ows_now()));
+	/* without Beat nothing was promised */
+	for (unsigned i = 0; i < WRITERS; i++)
+		w.writers[i].promised_ns = 0;
+	other.bytes[3] = 107;
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &other, ows_now()));
 }
 
 static void test_a_number_has_to_fit_before_any_is_set(void)
@@ -156,6 +183,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_client_is_a_controller_that_beats_as_long_as_it_asks);
 	RUN_TEST(test_what_is_refused_is_so_by_the_exception_that_fits);
+	RUN_TEST(test_an_address_that_owsd_has_lost_gives_its_place_to_another);
 	RUN_TEST(test_a_number_has_to_fit_before_any_is_set);
 	RUN_TEST(test_a_client_may_what_the_configuration_says);
 	RUN_TEST(test_a_client_that_promised_a_beat_is_lost_at_the_end_and_says_no_goodbye);
