@@ -61,6 +61,7 @@ LOOKED_AT = {
     "gpg": [r"--quick-generate-key owsd packages <packages@example\.org> ed25519 sign 2y",
             r"--list-keys --with-colons packages@example\.org", "--show-keys", "--quick-set-expire OLD 2y"],
     "rsync": [r"-a( --exclude InRelease)? build/repository/ packages\.example\.org:/srv/www/owsd"],
+    "g++": [r"-shared -fPIC -O2 -DOPENPLC_V4 -I openplc-runtime/core/src/drivers -o libowsd\.so owsd\.cpp -lows"],
     "halrun": [r"-I owsd\.hal"],
     "rpi-image-gen": [r"build -S /path/to/owsd/board/image/rpi-image-gen -c owsd\.yaml"],
 }
@@ -97,6 +98,10 @@ def owsctl(arguments):
     elif not {"-t", "config", "--help", "-h", "--version", "-V"} & set(words[:3]) or \
             {"watch", "wait"} & set(words):
         words[:0] = ["-n", NAME]
+    if "modbus-map" in words:
+        (STAGE / "modbus").mkdir(exist_ok=True)
+        (STAGE / "modbus/map").write_text("1 /28.000000000001/temperature\n")
+        words += ["-d", STAGE / "modbus"]
     if "watch" in words:
         words += ["-c", "2", "-t", "1"]
     if "wait" in words and "-t" in words[words.index("wait"):]:

@@ -45,6 +45,15 @@ bool layout_is_value(enum layout_field field)
 	return field <= LAYOUT_SHORT;
 }
 
+unsigned layout_in_record(enum layout_field field, unsigned place)
+{
+	unsigned at = place * LAYOUT_RECORD;
+
+	for (size_t i = 0; i < FIELDS && record[i].field != field; i++)
+		at += record[i].width;
+	return at;
+}
+
 unsigned layout_in_row(enum layout_field field, unsigned place)
 {
 	for (size_t i = 0; i < ROWS; i++)

@@ -72,6 +72,8 @@ bool layout_find(unsigned address, struct layout_place *at);
 unsigned layout_width(enum layout_field field);
 /* Is it made of the number, so that it has nothing to show of a value that is not good? */
 bool layout_is_value(enum layout_field field);
+/* Where the field of that place begins in its record. */
+unsigned layout_in_record(enum layout_field field, unsigned place);
 /* Where the field of that place begins in the rows of its kind; 0: it has none. */
 unsigned layout_in_row(enum layout_field field, unsigned place);
 

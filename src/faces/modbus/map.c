@@ -26,8 +26,7 @@ static int map_put(struct map *map, unsigned place, const char *identity)
 	return 0;
 }
 
-/* 0: it has none. */
-static unsigned find(const struct map *map, const char *identity)
+unsigned map_known(const struct map *map, const char *identity)
 {
 	for (unsigned i = 1; i <= map->last; i++)
 		if (map->places[i].identity && !strcmp(map->places[i].identity, identity))
@@ -50,7 +49,7 @@ int map_take(struct map *map, char *line)
 	identity += strspn(identity, " \t");
 	if (*identity != '/')
 		return -EINVAL;
-	if (map->places[place].identity || find(map, identity))
+	if (map->places[place].identity || map_known(map, identity))
 		return 0;
 	return map_put(map, (unsigned)place, identity);
 }
@@ -107,7 +106,7 @@ int map_write(const struct map *map, const char *path)
 
 int map_place(struct map *map, const char *identity)
 {
-	unsigned place = find(map, identity);
+	unsigned place = map_known(map, identity);
 	int err;
 
 	if (place)

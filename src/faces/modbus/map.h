@@ -30,6 +30,8 @@ int map_take(struct map *map, char *line);
 /* Replace the file. 0 or a negative errno. */
 int map_write(const struct map *map, const char *path);
 
+/* The place of the identity; 0: it has none. Pure. */
+unsigned map_known(const struct map *map, const char *identity);
 /* The place of the identity, after all others if it has none. -ENOSPC, -ENOMEM. Pure. */
 int map_place(struct map *map, const char *identity);
 void map_free(struct map *map);

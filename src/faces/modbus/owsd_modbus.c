@@ -21,8 +21,9 @@ static int check(const struct face *face)
 		              "as 7 /28.FF01/temperature",
 		              path, line, LAYOUT_PLACES - 1);
 	else if (err)
-		face_complain(face->ops->program, "Map: %s: %s; owsctl modbus-map --keep prints it",
-		              path, strerror(-err));
+		face_complain(face->ops->program,
+		              "Map: %s: %s; owsctl modbus-map --as map prints it", path,
+		              strerror(-err));
 	return err == -EACCES ? 0 : err; /* the service is another user */
 }
 

@@ -7,13 +7,13 @@
 
 #include "src/faces/show/json.h"
 #include "src/ground/signal/value.h"
+#include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/modbus_forms.h"
 #include "src/tool/owsctl/modbus_map.h"
 #include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
 
-enum form { FORM_TABLE, FORM_CSV, FORM_JSON, FORM_KEEP };
-
-static const struct table_column columns[] = {
+static const struct table_column columns[MODBUS_CELL_COUNT] = {
 	{.title = "PLACE", .right = true},
 	{.title = "RECORD", .right = true},
 	{.title = "FLOAT32", .right = true},
@@ -24,81 +24,67 @@ static const struct table_column columns[] = {
 	{.title = "UNIT"},
 	{.title = "IDENTITY"},
 };
-#define COLUMNS (sizeof(columns) / sizeof(columns[0]))
 
 /* A place: its numbers as text, then texts; of a signal that is gone they are "". */
-static void cells_of(const struct map *map, struct ows *h, unsigned place, char numbers[4][8],
-                     const char *cells[COLUMNS])
+static void cells_of(const struct map *map, struct ows *h, unsigned place,
+                     char numbers[MODBUS_CELL_TEXTS][8], const char *cells[MODBUS_CELL_COUNT])
 {
 	const unsigned at[] = {place, place * LAYOUT_RECORD, layout_in_row(LAYOUT_FLOAT, place),
 	                       layout_in_row(LAYOUT_DOUBLE, place)};
-	struct ows_info info = {.name = "", .unit = ""};
+	static struct ows_info info;
 	bool has = map->places[place].signal != MAP_NO_SIGNAL &&
 	           !ows_info(h, map->places[place].signal, &info);
 
-	for (unsigned i = 0; i < 4; i++) {
+	for (unsigned i = 0; i < MODBUS_CELL_TEXTS; i++) {
 		snprintf(numbers[i], sizeof(numbers[i]), "%u", at[i]);
 		cells[i] = numbers[i];
 	}
-	cells[4] = info.name;
-	cells[5] = has ? value_type_name((enum ows_type)info.type) : "";
-	cells[6] = !has ? "" : info.output ? "output" : "input";
-	cells[7] = info.unit;
-	cells[8] = map->places[place].identity;
+	cells[MODBUS_CELL_name] = has ? info.name : "";
+	cells[MODBUS_CELL_type] = has ? value_type_name((enum ows_type)info.type) : "";
+	cells[MODBUS_CELL_io] = !has ? "" : info.output ? "output" : "input";
+	cells[MODBUS_CELL_unit] = has ? info.unit : "";
+	cells[MODBUS_CELL_identity] = map->places[place].identity;
 }
 
 static void print_json_row(struct json *json, const char *const *cells)
 {
-	static const char *const keys[COLUMNS] = {"place", "record", "float32", "float64", "name",
-	                                          "type",  "io",     "unit",    "identity"};
-
 	json_object(json, NULL);
-	for (unsigned i = 0; i < COLUMNS; i++)
-		if (i < 4)
-			json_number(json, keys[i], cells[i]);
+	for (unsigned i = 0; i < MODBUS_CELL_COUNT; i++)
+		if (i < MODBUS_CELL_TEXTS)
+			json_number(json, modbus_cell_names[i], cells[i]);
 		else
-			json_string(json, keys[i], *cells[i] ? cells[i] : NULL);
+			json_string(json, modbus_cell_names[i], *cells[i] ? cells[i] : NULL);
 	json_object_end(json);
 }
 
-/* Each cell in quotes, those in it doubled (RFC 4180). */
-static void print_csv_row(const char *const *cells)
+/* form NULL: the table, or JSON. */
+static void print_map(const struct map *map, struct ows *h, struct modbus_file *file,
+                      const struct modbus_form *form, bool as_json)
 {
-	for (unsigned i = 0; i < COLUMNS; i++) {
-		fputs(i ? ",\"" : "\"", stdout);
-		for (const char *c = cells[i]; *c; c++)
-			fputs(*c == '"' ? "\"\"" : (char[]){*c, '\0'}, stdout);
-		putchar('"');
-	}
-	putchar('\n');
-}
-
-static void print_map(const struct map *map, struct ows *h, enum form form)
-{
-	const char *cells[COLUMNS];
-	char numbers[4][8];
+	const char *cells[MODBUS_CELL_COUNT];
+	char numbers[MODBUS_CELL_TEXTS][8];
 	struct table table;
 	struct json json;
 
-	table_init(&table, columns, COLUMNS);
-	json_list(&json, stdout, form == FORM_JSON);
-	if (form == FORM_CSV)
-		puts("place,record,float32,float64,name,type,io,unit,identity");
+	table_init(&table, columns, MODBUS_CELL_COUNT);
+	json_list(&json, stdout, as_json);
+	if (form)
+		modbus_form_begin(file, form);
 	for (unsigned place = 1; place <= map->last; place++) {
 		if (!map->places[place].identity)
 			continue;
 		cells_of(map, h, place, numbers, cells);
-		if (form == FORM_TABLE)
-			table_add(&table, cells);
-		else if (form == FORM_JSON)
+		if (form)
+			modbus_form_row(file, form, cells);
+		else if (as_json)
 			print_json_row(&json, cells);
-		else if (form == FORM_CSV)
-			print_csv_row(cells);
 		else
-			printf("%u %s\n", place, map->places[place].identity);
+			table_add(&table, cells);
 	}
 	json_list_end(&json);
-	if (form == FORM_TABLE)
+	if (form)
+		modbus_form_end(file, form);
+	else if (!as_json)
 		table_print(&table, true);
 	table_free(&table);
 }
@@ -140,43 +126,73 @@ int modbus_map_given(const struct ctl *ctl, const char *fixed, const char *direc
 	return status ? status : read_map(ctl, directory, NULL, map);
 }
 
-static void find_signals(struct map *map, struct ows *h)
+/* Returns how many places have one. */
+static unsigned find_signals(struct map *map, struct ows *h)
 {
+	unsigned count = 0, place;
 	struct ows_info info;
 
-	for (int i = 0; i < ows_count(h); i++)
-		for (unsigned place = 1; !ows_info(h, i, &info) && place <= map->last; place++)
-			if (map->places[place].identity &&
-			    !strcmp(map->places[place].identity, info.identity))
-				map->places[place].signal = i;
+	for (int i = 0; i < ows_count(h); i++) {
+		place = ows_info(h, i, &info) ? 0 : map_known(map, info.identity);
+		if (place)
+			map->places[place].signal = i;
+		count += place != 0;
+	}
+	return count;
+}
+
+/* HOST, HOST:PORT or [HOST]:PORT. False: it is none; the text is taken to pieces. */
+static bool host_and_port(char *text, struct modbus_file *file)
+{
+	char *colon = strrchr(text, ':');
+	int64_t number;
+
+	if (colon && (*text == '[' ? colon[-1] == ']' : strchr(text, ':') == colon)) {
+		*colon = '\0';
+		file->port = colon + 1;
+	}
+	if (*text == '[' && text[1] && text[strlen(text) - 1] == ']') {
+		text[strlen(text) - 1] = '\0';
+		text++;
+	}
+	file->host = text;
+	/* it goes into scripts */
+	return *text &&
+	       !text[strspn(text, "0123456789abcdefghijklmnopqrstuvwxyz"
+	                          "ABCDEFGHIJKLMNOPQRSTUVWXYZ.:-_%")] &&
+	       ctl_count(file->port, 1, UINT16_MAX, &number);
 }
 
 int verb_modbus_map(struct ctl *ctl, int argc, char **argv)
 {
+	struct modbus_file file = {
+		.out = stdout, .instance = ctl->instance, .host = "127.0.0.1", .port = "502"};
+	const struct modbus_form *form = NULL;
 	const char *directory = NULL;
-	enum form form = FORM_TABLE;
 	static struct map map;
 	struct ows *h;
 	int c, status;
 
-	while ((c = ctl_option(ctl, argc, argv, "d:Ck")) != -1)
+	while ((c = ctl_option(ctl, argc, argv, "d:A:H:")) != -1) {
 		if (c == 'd')
 			directory = optarg;
-		else
-			form = c == 'C' ? FORM_CSV : FORM_KEEP;
+		if (c == 'A' && !(form = modbus_form_find(optarg)))
+			return ctl_usage(ctl, "--as %s: one of these expected: %s",
+			                 ctl_word(optarg), modbus_form_names());
+		if (c == 'H' && !host_and_port(optarg, &file))
+			return ctl_usage(ctl, "--host: HOST or HOST:PORT expected");
+	}
 	if (optind < argc)
 		return ctl_usage(ctl, "it takes no names");
-	if (ctl->json && form != FORM_TABLE)
-		return ctl_usage(ctl, "--csv, --keep and --json exclude each other");
-	if (ctl->json)
-		form = FORM_JSON;
+	if (ctl->json && form)
+		return ctl_usage(ctl, "--as and --json exclude each other");
 	status = read_map(ctl, directory,
 	                  "has owsd-modbus run for this instance, with a Modbus block?", &map);
 	if (status)
 		return status;
 	h = ctl_open(ctl, OWS_READ);
-	find_signals(&map, h);
-	print_map(&map, h, form);
+	file.count = find_signals(&map, h);
+	print_map(&map, h, &file, form, ctl->json);
 	map_free(&map);
 	ows_close(h);
 	return CTL_DONE;

@@ -93,12 +93,14 @@ static const struct verb verbs[] = {
 	{"disable", "[--dry-run] web|mqtt|history|...", "switch a program beside owsd off",
          verb_disable, .options = "  --dry-run  print the commands alone\n",
          .example = "disable web"},
-	{"modbus-map", "[-d DIR] [--csv | --keep]",
+	{"modbus-map", "[-d DIR] [--as FORM] [--host HOST[:PORT]]",
          "at which addresses owsd-modbus serves each signal", verb_modbus_map,
-         .options = "  -d DIR  where owsd-modbus keeps the map (--directory)\n"
-                    "  --csv   a line for each place, for other programs; --json too\n"
-                    "  --keep  as the file that the key Map of the Modbus block names\n",
-         .example = "modbus-map --csv", .finds = true},
+         .options = "  -d DIR       where owsd-modbus keeps the map (--directory)\n"
+                    "  --as FORM    for the import of another program: csv, plcopen (CODESYS,\n"
+                    "               TwinCAT), scl (Siemens), node-red, openplc, mb2hal, mbpoll;\n"
+                    "               map: the file that the key Map of the Modbus block names\n"
+                    "  --host HOST  where that program reaches owsd-modbus; 127.0.0.1:502\n",
+         .example = "modbus-map --as node-red --host 192.168.1.10", .finds = true},
 	{"convert", "[-d DIR] --mbdrv FILE",
          "the items of a configuration for REXYGEN's Modbus driver", verb_convert,
          .options = "  -d DIR   where owsd-modbus keeps the map (--directory)\n"
