@@ -19,6 +19,7 @@
 #include "src/faces/web/past.h"
 #include "src/faces/web/paths.h"
 #include "src/faces/web/person.h"
+#include "src/faces/web/places.h"
 #include "src/faces/web/show.h"
 #include "src/faces/web/stream.h"
 #include "src/ground/board/files.h"
@@ -122,8 +123,11 @@ static int answer_metrics(struct request *request)
 static enum stream_more put_signals(struct stream *stream, FILE *out)
 {
 	const struct web *web = stream->web;
-	struct show show = {
-		.h = web->face->ows, .now_ns = ows_now(), .live = web->face->live, .ids = web->ids};
+	struct show show = {.h = web->face->ows,
+	                    .now_ns = ows_now(),
+	                    .live = web->face->live,
+	                    .ids = web->ids,
+	                    .places = places_of(web->face->arguments->instance)};
 	struct json json = {.out = out, .inner = stream->row > 0};
 	struct ows_daemon daemon;
 

@@ -14,6 +14,7 @@
 #include "src/faces/show/reading.h"
 #include "src/faces/show/standing.h"
 #include "src/faces/show/when.h"
+#include "src/faces/web/places.h"
 #include "src/faces/web/show.h"
 #include "src/ground/signal/value.h"
 
@@ -152,6 +153,7 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	put_text(json, "group", info.group);
 	json_string(json, "path", info.path);
 	json_string(json, "identity", info.identity);
+	json_known(json, "modbus", places_register(show->places, info.identity));
 	put_text(json, "family", info.family);
 	put_text(json, "device", info.device);
 	put_terminal(json, show->h, info.device);

@@ -7,12 +7,14 @@
 #include "src/faces/show/json.h"
 #include "src/public/ows.h"
 
+struct map;
 struct show {
 	struct ows *h;
 	int64_t now_ns;
-	bool live;        /* owsd is there */
-	int64_t start_ns; /* owsd's; 0: not known */
-	const int *ids;   /* of the signals that can have alarms; else negative */
+	bool live;                /* owsd is there */
+	int64_t start_ns;         /* owsd's; 0: not known */
+	const int *ids;           /* of the signals that can have alarms; else negative */
+	const struct map *places; /* of Modbus; NULL: none */
 };
 
 /* An object with all that is known of the signal, but for strings that are very long. */
