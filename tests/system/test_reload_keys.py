@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Each key of the blocks Web, Mqtt, Influx and Recorder counts from a reload on. KEYS is the table:
+"""Each key of the blocks Web, Mqtt, Influx, Recorder and Modbus counts from a reload on. KEYS is the table:
 what stands beside the key, its value, and what is seen from outside once it counts and not before;
 where that takes days, the face's own words. A key of owsd without a row fails. What a key names has
 to be there: --check looks."""
@@ -16,6 +16,7 @@ import ssl
 import threading
 import time
 
+import modbushouse
 import mqtthouse
 import owsdtest
 from owsdtest import BUILD, SOURCE, free_port, place, raw, until
@@ -141,11 +142,13 @@ class House:
             "Mqtt": {"Broker": f"mqtt://127.0.0.1:{self.broker.port}", "Node": "pi7"},
             "Influx": {"Url": self.server.url + "/write", "Every": raw("0.2"), "ClockWait": raw("0")},
             "Recorder": {"Directory": scene.path / "history", "Flush": raw("1")},
+            "Modbus": {"Listen": f"127.0.0.1:{free_port()}"},
         }
         self.wire = scene.file("house.sim", "chip DS2482-100 0x18\n"
                                f"DS18B20 {mqtthouse.SENSOR} temperature 21.5\nDS2408 {mqtthouse.SWITCH}\n")
         self.daemon = scene.owsd(self.text())
-        self.face = scene.start([program, "-v", "-n", self.daemon.name, "-c", self.daemon.config])
+        self.face = scene.start([program, "-v", "-n", self.daemon.name, "-c", self.daemon.config],
+                                {"STATE_DIRECTORY": str(scene.path / "state")})
         until(lambda: "is there" in self.face.log(), 20, self.face.log)
         self.read, self.relay = 0, False
 
@@ -300,7 +303,67 @@ def mqtt_keys(house):
     yield key("Rename", raw("on"), linked(lambda c: any("+/rename" in asked for asked in c["asked"])))
 
 
-KEYS = {"Web": web_keys, "Mqtt": mqtt_keys, "Influx": influx_keys, "Recorder": recorder_keys}
+def plc(fits, unit=1):
+    """What a client of Modbus reads; it may be closed in the moment of a reload."""
+    def look(house):
+        try:
+            with modbushouse.Client(int(house.base["Modbus"]["Listen"].rpartition(":")[2]), unit) as client:
+                return fits(client)
+        except OSError:
+            return None
+    return look
+
+
+def has_place(place):
+    return plc(lambda c: modbushouse.refused(c.registers, 16 * place, 1) is None)
+
+
+def set_is(exception):
+    return plc(lambda c: modbushouse.refused(c.write_one, 32 + modbushouse.SHORT, 1) == exception)
+
+
+def promises(seconds):
+    """The controller of a client that sets the relay."""
+    def look(house):
+        if not set_is(None)(house):
+            return False
+        who = json.loads(house.scene.owsctl(house.daemon, "--json", "who").stdout)
+        return any(one["beat"] == seconds for one in who["controllers"])
+    return look
+
+
+def one_is_left(house):
+    port = int(house.base["Modbus"]["Listen"].rpartition(":")[2])
+    with modbushouse.Client(port) as first, modbushouse.Client(port) as second:
+        try:
+            second.registers(0, 1)
+            return first.registers(0, 1) is None
+        except OSError:
+            return True
+
+
+def modbus_keys(house):
+    second = free_port()
+    places = house.scene.file("places", f"700 {mqtthouse.ROOM['Path']}\n")
+
+    def listens(_):
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", second), 5):
+            return True
+        return False
+    may = {"Write": raw("on"), "Allow": "relay 127.0.0.1"}
+    yield key("Listen", f"127.0.0.1:{second}", listens)
+    yield key("UnitId", raw("7"), plc(lambda c: modbushouse.refused(c.registers, 0, 1) == modbushouse.NO_TARGET))
+    yield key("WordOrder", "little", plc(lambda c: c.registers(0, 2) == (0x5344, 0x4F57)))
+    yield key("BadValue", "exception", plc(lambda c: modbushouse.refused(c.registers, 32, 4) == modbushouse.NO_TARGET))
+    yield key("Decimals", raw("2"), plc(lambda c: c.registers(16 + modbushouse.SHORT, 1) == (2150,)))
+    yield key("Clients", raw("1"), one_is_left)
+    yield key("Write", raw("on"), set_is(None), Allow=may["Allow"])
+    yield key("Allow", may["Allow"], set_is(None), Write=may["Write"], Allow="relay 192.0.2.7")
+    yield key("Beat", raw("7"), promises(7), **may)
+    yield key("Map", places, has_place(700))
+
+
+KEYS = {"Web": web_keys, "Mqtt": mqtt_keys, "Influx": influx_keys, "Recorder": recorder_keys, "Modbus": modbus_keys}
 
 
 def options(block):
@@ -336,6 +399,10 @@ def test_each_key_of_owsd_influx_counts_from_a_reload_on(scene):
 
 def test_each_key_of_owsd_recorder_counts_from_a_reload_on(scene):
     counts(scene, "Recorder")
+
+
+def test_each_key_of_owsd_modbus_counts_from_a_reload_on(scene):
+    counts(scene, "Modbus")
 
 
 CHECKED = {block: [name for name in options(block) if re.search("Files?$", name)]
