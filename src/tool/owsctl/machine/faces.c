@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Reads the table of the faces, and what their blocks of the configuration ask for. */
 #include <errno.h>
-#include <glob.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -110,23 +109,30 @@ const char *face_unit(const struct face_row *row, const char *instance, const ch
 	return unit;
 }
 
-bool faces_file(const char *pattern)
+size_t faces_files(const char *root, const char *pattern, glob_t *found)
 {
-	glob_t found;
-	bool any = glob(pattern, GLOB_BRACE, NULL, &found) == 0;
+	static const char *const folders[] = {"usr/lib", "usr/local/lib", "lib", "etc"};
+	char path[640];
 
-	globfree(&found);
-	return any;
+	*found = (glob_t){0};
+	for (size_t i = 0; i < sizeof(folders) / sizeof(*folders); i++) {
+		snprintf(path, sizeof(path), "%.200s/%s/%.400s", root, folders[i], pattern);
+		/* not GLOB_BRACE, which musl has not */
+		glob(path, found->gl_pathc ? GLOB_APPEND : 0, NULL, found);
+	}
+	return found->gl_pathc;
 }
 
 bool face_is_installed(const char *root, const struct face_row *row)
 {
-	char pattern[400];
+	char pattern[FACE_UNIT];
+	glob_t found;
+	bool any;
 
-	snprintf(pattern, sizeof(pattern),
-	         "%.200s/{usr/lib,usr/local/lib,lib,etc}/systemd/system/%s@.service", root,
-	         row->program);
-	return faces_file(pattern);
+	snprintf(pattern, sizeof(pattern), "systemd/system/%.100s@.service", row->program);
+	any = faces_files(root, pattern, &found) > 0;
+	globfree(&found);
+	return any;
 }
 
 void face_addresses(const struct config *config, char *text, size_t size)

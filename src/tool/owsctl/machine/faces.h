@@ -2,6 +2,7 @@
 /* The programs beside owsd, by their table board/faces, and what a configuration asks of them. */
 #pragma once
 
+#include <glob.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -34,8 +35,11 @@ bool face_has(const struct config *config, const char *program, const char *key)
 /* "owsd-web@OWS.socket"; what: "socket" or "service". Returns unit. */
 const char *face_unit(const struct face_row *row, const char *instance, const char *what,
                       char unit[FACE_UNIT]);
-/* Is there a file of that pattern? */
-bool faces_file(const char *pattern);
+/*
+ * The files of a pattern such as "systemd/system/owsd*" in the folders below a root where systemd
+ * looks; how many. One may be there twice. found is for globfree().
+ */
+size_t faces_files(const char *root, const char *pattern, glob_t *found);
 /* Has the machine below the root the units of the face? */
 bool face_is_installed(const char *root, const struct face_row *row);
 /* The addresses of its page, "http://127.0.0.1:8080/", with blanks between; "" none. */

@@ -15,6 +15,7 @@
 #include "src/config/check/check.h"
 #include "src/config/read/load.h"
 #include "src/config/read/report.h"
+#include "src/tool/owsctl/machine/faces.h"
 #include "src/tool/owsctl/machine/machine.h"
 #include "src/tool/owsctl/machine/seen.h"
 #include "src/tool/owsctl/machine/units.h"
@@ -221,15 +222,11 @@ static bool take_sysusers(struct doctor *d, const char *path)
 
 static void check_service_users(struct doctor *d)
 {
-	char pattern[512];
 	glob_t found;
+	size_t n = faces_files(d->root, "sysusers.d/owsd*.conf", &found);
 
-	snprintf(pattern, sizeof(pattern), "%s/{usr/lib,usr/local/lib,etc}/sysusers.d/owsd*.conf",
-	         d->root);
-	if (glob(pattern, GLOB_BRACE, NULL, &found))
-		return;
 	/* one command makes all of them */
-	for (size_t i = 0; i < found.gl_pathc && !take_sysusers(d, found.gl_pathv[i]); i++)
+	for (size_t i = 0; i < n && !take_sysusers(d, found.gl_pathv[i]); i++)
 		;
 	globfree(&found);
 }

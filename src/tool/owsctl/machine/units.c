@@ -50,8 +50,12 @@ bool unit_is_active(const struct unit *unit)
 /* A link makes it start with the machine. */
 bool unit_is_enabled(const struct doctor *d, const char *id)
 {
-	char pattern[FACE_UNIT + DOCTOR_ROOT + 40];
+	char pattern[FACE_UNIT + 40];
+	glob_t found;
+	bool any;
 
-	snprintf(pattern, sizeof(pattern), "%s/etc/systemd/system/*.wants/%s", d->root, id);
-	return faces_file(pattern);
+	snprintf(pattern, sizeof(pattern), "systemd/system/*.wants/%s", id);
+	any = faces_files(d->root, pattern, &found) > 0;
+	globfree(&found);
+	return any;
 }
