@@ -59,6 +59,9 @@
 #                                 by REPOSITORY_KEY=FINGERPRINT (docs/repository.md)
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
 #   make test-dist                that tarball built and run without git and network
+#   make recipes                  for Alpine, Buildroot and Yocto, of that tarball, in build/recipes;
+#                                 RECIPES_URL=https://... is where it lies (docs/distributions.md)
+#   make oci                      an OCI image of what make deb made, in build/oci; ARCH and SUITE too
 #   make test-package             packages of three architectures, lintian, install to purge
 #   make test-fresh               the first two commands in new systems of Debian 12 and 13, with
 #                                 make alone or with gcc; DEBIAN=bookworm HAVE=gcc AT=tmp
@@ -754,6 +757,12 @@ test-package:
 	@sh board/install-deps chroot repository $(if $(OR_SKIP),|| true)
 	@sh tests/package/run $(if $(OR_SKIP),--or-skip) $(if $(SUITE),--suite $(SUITE)) $(ARCH)
 
+# build/deb as an image for containers: ARCH='amd64 arm64 armhf' SUITE=trixie
+.PHONY: oci recipes
+oci:
+	@sh board/install-deps oci
+	@python3 board/make-oci $(if $(SUITE),--suite $(SUITE)) $(ARCH)
+
 # The two commands of the README in new systems: DEBIAN=bookworm HAVE=gcc AT=tmp ORDER=run-test
 test-fresh: export DEBIAN := $(DEBIAN)
 test-fresh: export HAVE := $(HAVE)
@@ -775,6 +784,9 @@ test-service:
 dist:
 	@sh board/install-deps dist
 	@sh board/make-dist
+
+recipes:
+	@python3 board/make-recipes $(if $(RECIPES_URL),--url $(RECIPES_URL)) build/dist/owsd-$(VERSION).tar.xz
 
 test-dist: build/unity/unity.h
 	@sh board/install-deps build dist
