@@ -190,7 +190,8 @@ def test_bash_completes_verbs_signals_and_instances(scene):
                             (["get", "ro"], ["room"]), (["-n", "house", "set", "fa"], ["far"]),
                             (["-n", ""], ["house"]), (["remove", "h"], ["house"]),
                             (["watch", "-l"], ["-l"]), (["alarms", "ac"], ["ack"]),
-                            (["config", "wire.s"], ["wire.sim"]), (["convert", "--mbdrv", "wire.s"], ["wire.sim"]), (["config", "x", "mo"], ["move"]),
+                            (["config", "wire.s"], ["wire.sim"]), (["config", "x", "mo"], ["move"]),
+                            (["convert", "--mbdrv", "wire.s"], ["wire.sim"]),
                             (["enable", "we"], ["web"]), (["disable", "mq"], ["mqtt"]),
                             (["stats", ""], [])):
         assert sorted(completed(scene, place, *words)) == sorted(expected), words

@@ -13,6 +13,7 @@ import math
 import os
 import pathlib
 import re
+import struct
 
 import handbook
 import owsdtest
@@ -20,7 +21,7 @@ import rexygen
 import served
 from mqtthouse import ABSENT, RELAY, ROOM, House, item, program
 from owsdtest import SOURCE, free_port, raw, until
-from test_modbus import Client, Refused, refused, serve
+from test_modbus import PYMODBUS, Client, Refused, python_with_pymodbus, refused, serve
 
 SHAPES = sorted((SOURCE / "tests/unit/data").glob("*.rio"))
 CHIPS = {"10": "DS18S20 {0} temperature {1}", "26": "DS2438 {0} temperature {1} vdd 5 vad 2.3", "28": "DS18B20 {0} temperature {1}",
@@ -132,8 +133,41 @@ def test_owsdrv_serves_the_alarms_of_the_manuals_ds2408(scene):
     assert driver.values["contacts"] == int(driver.read(f"{path}/sensed.BYTE")) == 255 - 12
 
 
-def with_modbus(text, port):
-    block = f'\n  Modbus {{\n    Listen "127.0.0.1:{port}"\n    Write on\n    Allow "* 127.0.0.1"\n  }}'
+BOTH = f"""OwsDrv {{
+  Item {{
+    Name                    "room"
+    Path                    "{served.THERMOMETER}/temperature"
+    IOType                  0x0018
+  }}
+  Item {{
+    Name                    "limit"
+    Path                    "{served.THERMOMETER}/temphigh"
+    IOType                  0x0028
+    InitValue               "30"
+  }}
+  Item {{
+    Name                    "volts"
+    Path                    "{served.BATTERY}/VDD"
+    IOType                  0x0018
+  }}
+}}
+"""
+
+
+def test_owsdrv_is_answered_by_owsd_as_by_the_genuine_owserver(scene):
+    for which in served.STARTS:
+        server = served.start(scene, which)
+        driver = rexygen.OwsDrv(BOTH, server)
+        for number in ("30", "-12"):  # the mock of owserver keeps what is written to it
+            driver.set["limit"] = number
+            until(lambda d=driver, n=number: d.cycle() or d.written.get("limit") == n, 20, which)
+            assert driver.read(f"{served.THERMOMETER}/temphigh") == number, which
+        until(lambda d=driver: d.cycle() or (d.values["room"], d.values["volts"]) == (21.5, 5), 20, lambda d=driver: d.values)
+        assert driver.read(served.ABSENT + "/temperature") is None, which
+
+
+def with_modbus(text, port, more=""):
+    block = f'\n  Modbus {{\n    Listen "127.0.0.1:{port}"\n    Write on\n    Allow "* 127.0.0.1"\n    {more}\n  }}'
     return text.replace("{", "{" + block, 1)
 
 
@@ -220,6 +254,39 @@ def test_mbdrv_reads_and_writes_each_type_and_a_bad_value_is_no_number(scene):
     assert face.stop() == 0
 
 
+def test_pymodbus_reads_what_owsctl_shows_at_the_addresses_of_the_file(scene):
+    python = python_with_pymodbus()
+    text = text_of(next(path for path in SHAPES if path.name == "four_thermometers.rio"))
+    port = free_port()
+    daemon = scene.owsd(with_modbus(text, port), "-t", network(scene, text))
+    face = serve(scene, daemon)
+    driver = by_mbdrv(scene, daemon, port, face)
+    items = [i for i in driver.items if not i.name.startswith("owsd_")]
+    asked = json.dumps([(i.address, struct.calcsize(i.form) // 2) for i in items])
+    assert len(items) == 4
+
+    def agree():
+        done = scene._run([python, "-c", PYMODBUS, port, asked], 20)
+        assert done.returncode == 0, done
+        return same({i.name: struct.unpack(i.form, struct.pack(f">{len(words)}H", *words))[0]
+                     for i, words in zip(items, json.loads(done.stdout))}, shown(scene, daemon))
+    until(agree, 30, "the same values")
+    assert face.stop() == 0
+
+
+def test_a_word_order_that_is_wrong_shows_in_the_number_of_the_page(scene):
+    said = (SOURCE / "docs/from-rexygen.md").read_text()
+    for more, number in (("", 3612558336), ('WordOrder "little"', 843144691712)):
+        port = free_port()
+        daemon = scene.owsd(with_modbus(text_of(SHAPES[0]), port, more), "-t", network(scene, text_of(SHAPES[0])))
+        face = serve(scene, daemon)
+        driver = by_mbdrv(scene, daemon, port, face)
+        driver.read(Refused)
+        assert driver.values["owsd_order"] == number and str(number) in said
+        driver.client.socket.close()
+        assert face.stop() == 0 and daemon.stop() == 0
+
+
 def shown_numbers(scene, daemon, names):
     return {n: float(row["value"]) for row in json.loads(scene.owsctl(daemon, "--json", "list", *names).stdout)
             if (n := row["name"]) and row["value"] is not None}
@@ -272,8 +339,8 @@ def test_mqttdrv_has_values_their_quality_and_commands_by_the_pages_recipe(scene
         texts = [line.split("\t", 1)[1] for line in driver.log().split("\n")[:-1] if line.startswith(topic + "\t")]
         return texts[-1] if texts else None
     until(lambda: last("owsd/pi7/state") == "online", 20, driver.log)
-    until(lambda: last("owsd/pi7/temperature") and pjroct(last("owsd/pi7/temperature"), "v", "q", yerr=-300) == [21.5, 192], 20, driver.log)
-    until(lambda: last("owsd/pi7/absent") and pjroct(last("owsd/pi7/absent"), "v", "q", yerr=-300) == [-300, 8], 20, driver.log)
+    for name, parsed in (("temperature", [21.5, 192]), ("absent", [-300, 8])):
+        until(lambda t=f"owsd/pi7/{name}", p=parsed: last(t) and pjroct(last(t), "v", "q", yerr=-300) == p, 20, driver.log)
     # as the block MqttPublish makes text of a bool, or of a number
     for value, is_on in (("1", True), ("0", False), ("on", True), ("0.000000", False)):
         done = scene._run([program("mosquitto_pub"), *who, "-t", "owsd/pi7/relay/set", "-m", value], 20)
