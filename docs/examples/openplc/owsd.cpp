@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// A hardware layer for the OpenPLC runtime: located variables of a PLC program that are signals of
-// owsd. docs/openplc.md says how to put it in. It is compiled against OpenPLC's own ladder.h, which
-// is under the GPL; this file alone is not.
+// Signals of owsd as located variables of a PLC program: a hardware layer for the runtime of OpenPLC
+// 3, and with OPENPLC_V4 a native plug-in for that of OpenPLC 4. docs/openplc.md says how to put it
+// in. It is compiled against OpenPLC's own header, ladder.h (under the GPL; this file alone is not)
+// or plugin_types.h.
 //
-// What is what stands in /etc/owsd/openplc.map, or the file that OWSD_OPENPLC_MAP names.
+// What is what stands in a map: the file that plugins.conf names for a plug-in, else the one of
+// OWSD_OPENPLC_MAP, else /etc/owsd/openplc.map.
 #include <ows.h>
 
 #include <cerrno>
@@ -21,7 +23,11 @@
 #include <string>
 #include <vector>
 
+#ifdef OPENPLC_V4
+#include "plugin_types.h"
+#else
 #include "ladder.h"
+#endif
 
 namespace {
 
@@ -67,6 +73,69 @@ struct Variable {
 	}
 };
 
+// --- The runtime ---------------------------------------------------------------------------------
+
+// A cell holds the bits of its variable, whatever that is. Both runtimes call their cells the same.
+#ifdef OPENPLC_V4
+
+#define CELLS(kind) runtime.kind
+const bool has_long_outputs = true;
+plugin_runtime_args_t runtime; // a copy: the runtime frees its own
+
+unsigned cells()
+{
+	return (unsigned)runtime.buffer_size;
+}
+
+unsigned long long cycle_ns()
+{
+	return runtime.base_tick_ns;
+}
+
+void say(const std::string &text)
+{
+	runtime.log_info("owsd: %s", text.c_str());
+}
+
+// In the journal, without a lock: the runtime takes it at the start of the next cycle
+void store(const Variable &v, uint64_t bits)
+{
+	enum { BOOL_INPUT = 0, BYTE_INPUT = 3, INT_INPUT = 5, DINT_INPUT = 8, LINT_INPUT = 11 };
+	const int i = (int)v.index;
+
+	switch (v.size) {
+	case 'X':
+		runtime.journal_write_bool(BOOL_INPUT, i, (int)v.bit, (int)bits);
+		break;
+	case 'B':
+		runtime.journal_write_byte(BYTE_INPUT, i, (uint8_t)bits);
+		break;
+	case 'W':
+		runtime.journal_write_int(INT_INPUT, i, (uint16_t)bits);
+		break;
+	case 'D':
+		runtime.journal_write_dint(DINT_INPUT, i, (uint32_t)bits);
+		break;
+	default:
+		runtime.journal_write_lint(LINT_INPUT, i, bits);
+	}
+}
+
+#else
+
+#define CELLS(kind) kind
+const bool has_long_outputs = false; // its generator binds %QL to its inputs
+
+unsigned cells()
+{
+	return BUFFER_SIZE;
+}
+
+unsigned long long cycle_ns()
+{
+	return common_ticktime__;
+}
+
 void say(const std::string &text)
 {
 	std::vector<char> line;
@@ -75,6 +144,66 @@ void say(const std::string &text)
 		line.push_back(c);
 	line.push_back('\0');
 	openplc_log(line.data());
+}
+
+void store(const Variable &v, uint64_t bits)
+{
+	const unsigned i = v.index;
+
+	switch (v.size) {
+	case 'X':
+		*bool_input[i][v.bit] = bits != 0;
+		break;
+	case 'B':
+		*byte_input[i] = (IEC_BYTE)bits;
+		break;
+	case 'W':
+		*int_input[i] = (IEC_UINT)bits;
+		break;
+	case 'D':
+		*dint_input[i] = (IEC_UDINT)bits;
+		break;
+	default:
+		*lint_input[i] = (IEC_ULINT)bits;
+	}
+}
+
+#endif
+
+// OpenPLC 3 has no cell for a variable that the program does not have
+bool present(const Variable &v)
+{
+	const unsigned i = v.index;
+	const bool in = v.area == 'I';
+
+	switch (v.size) {
+	case 'X':
+		return (in ? CELLS(bool_input) : CELLS(bool_output))[i][v.bit] != nullptr;
+	case 'B':
+		return (in ? CELLS(byte_input) : CELLS(byte_output))[i] != nullptr;
+	case 'W':
+		return (in ? CELLS(int_input) : CELLS(int_output))[i] != nullptr;
+	case 'D':
+		return (in ? CELLS(dint_input) : CELLS(dint_output))[i] != nullptr;
+	}
+	return (in ? CELLS(lint_input) : CELLS(lint_output))[i] != nullptr;
+}
+
+uint64_t load(const Variable &v)
+{
+	const unsigned i = v.index;
+
+	switch (v.size) {
+	case 'X':
+		return *CELLS(bool_output)[i][v.bit] != 0;
+	case 'B':
+		return *CELLS(byte_output)[i];
+	case 'W':
+		return *CELLS(int_output)[i];
+	case 'D':
+		return *CELLS(dint_output)[i];
+	}
+	return *CELLS(lint_output)[i];
 }
 
 // --- The map -----------------------------------------------------------------------------------
@@ -145,10 +274,10 @@ private:
 		if (n < 3 || (v.area != 'I' && v.area != 'Q') || !std::strchr("XBWDL", v.size) ||
 		    n != (v.size == 'X' ? 4 : 3) || std::isdigit((unsigned char)text[3]) == 0)
 			throw std::runtime_error("'" + text + "' is no variable such as %IX0.0 %IW3 %QD1");
-		if (v.index >= BUFFER_SIZE || v.bit > 7)
+		if (v.index >= cells() || v.bit > 7)
 			throw std::runtime_error("'" + text + "' is beyond OpenPLC's " +
-			                         std::to_string(BUFFER_SIZE) + " variables of a kind");
-		if (v.area == 'Q' && v.size == 'L')
+			                         std::to_string(cells()) + " variables of a kind");
+		if (!has_long_outputs && v.area == 'Q' && v.size == 'L')
 			throw std::runtime_error("OpenPLC does not bind %QL to its outputs; take %QD or %QW");
 	}
 
@@ -189,126 +318,119 @@ private:
 
 // --- The variables -------------------------------------------------------------------------------
 
-// A whole number into the variable, if it holds it
-template <typename T, typename Cell> bool put_whole(Cell *cell, double value)
+// The bits of a whole number, if the type holds it
+template <typename T> bool whole(double value, uint64_t &bits)
 {
-	double whole = std::round(value);
+	double number = std::round(value);
 
 	// 2^63 and more: as doubles the limits themselves are not exact
-	if (!(whole >= (double)std::numeric_limits<T>::min() &&
-	      whole < (double)std::numeric_limits<T>::max() + 1.0))
+	if (!(number >= (double)std::numeric_limits<T>::min() &&
+	      number < (double)std::numeric_limits<T>::max() + 1.0))
 		return false;
-	*cell = (Cell)(T)whole;
+	bits = (uint64_t)(T)number;
 	return true;
 }
 
-template <typename T, typename Cell> bool put_float(Cell *cell, double value)
+template <typename T, typename Bits> bool real(double value, uint64_t &bits)
 {
-	T real = (T)value;
+	T number = (T)value;
+	Bits same;
 
-	static_assert(sizeof(T) == sizeof(Cell), "the bits of the one are those of the other");
-	std::memcpy(cell, &real, sizeof(real));
-	return std::isfinite(real);
+	static_assert(sizeof(number) == sizeof(same), "the bits of the one are those of the other");
+	std::memcpy(&same, &number, sizeof(same));
+	bits = same;
+	return std::isfinite(number);
 }
 
-template <typename T, typename Cell> double get(const Cell *cell)
+template <typename T, typename Bits> double real_of(uint64_t bits)
 {
-	T value;
+	Bits same = (Bits)bits;
+	T number;
 
-	static_assert(sizeof(T) == sizeof(Cell), "the bits of the one are those of the other");
-	std::memcpy(&value, cell, sizeof(value));
-	return (double)value;
+	std::memcpy(&number, &same, sizeof(number));
+	return (double)number;
 }
 
-// False: the variable cannot hold it, and keeps what it has
-bool put(const Variable &v, double value)
+// False: the variable cannot hold it
+bool bits_of(Kind kind, double value, uint64_t &bits)
 {
-	const unsigned i = v.index;
-
-	switch (v.kind) {
+	switch (kind) {
 	case Kind::boolean:
 	case Kind::good:
-		*bool_input[i][v.bit] = value != 0;
+		bits = value != 0;
 		return true;
 	case Kind::usint:
-		return put_whole<uint8_t>(byte_input[i], value);
+		return whole<uint8_t>(value, bits);
 	case Kind::sint:
-		return put_whole<int8_t>(byte_input[i], value);
+		return whole<int8_t>(value, bits);
 	case Kind::integer:
-		return put_whole<int16_t>(int_input[i], value);
+		return whole<int16_t>(value, bits);
 	case Kind::uinteger:
-		return put_whole<uint16_t>(int_input[i], value);
+		return whole<uint16_t>(value, bits);
 	case Kind::dint:
-		return put_whole<int32_t>(dint_input[i], value);
+		return whole<int32_t>(value, bits);
 	case Kind::udint:
-		return put_whole<uint32_t>(dint_input[i], value);
+		return whole<uint32_t>(value, bits);
 	case Kind::real:
-		return put_float<float>(dint_input[i], value);
+		return real<float, uint32_t>(value, bits);
 	case Kind::lint:
-		return put_whole<int64_t>(lint_input[i], value);
+		return whole<int64_t>(value, bits);
 	case Kind::lreal:
-		return put_float<double>(lint_input[i], value);
+		return real<double, uint64_t>(value, bits);
 	}
 	return false;
 }
 
-double take(const Variable &v)
+// False: the variable keeps what it has
+bool put(const Variable &v, double value)
 {
-	const unsigned i = v.index;
+	uint64_t bits = 0;
 
-	switch (v.kind) {
-	case Kind::boolean:
-		return *bool_output[i][v.bit] != 0;
-	case Kind::usint:
-		return get<uint8_t>(byte_output[i]);
-	case Kind::sint:
-		return get<int8_t>(byte_output[i]);
-	case Kind::integer:
-		return get<int16_t>(int_output[i]);
-	case Kind::uinteger:
-		return get<uint16_t>(int_output[i]);
-	case Kind::dint:
-		return get<int32_t>(dint_output[i]);
-	case Kind::udint:
-		return get<uint32_t>(dint_output[i]);
-	case Kind::real:
-		return get<float>(dint_output[i]);
-	case Kind::good:
-	case Kind::lint:
-	case Kind::lreal:
-		break;
-	}
-	return 0;
+	if (!bits_of(v.kind, value, bits))
+		return false;
+	store(v, bits);
+	return true;
 }
 
-// OpenPLC has no cell for a variable that the program does not have
-bool present(const Variable &v)
+double take(const Variable &v)
 {
-	const unsigned i = v.index;
-	const bool in = v.area == 'I';
+	const uint64_t bits = load(v);
 
-	switch (v.size) {
-	case 'X':
-		return (in ? bool_input : bool_output)[i][v.bit] != nullptr;
-	case 'B':
-		return (in ? byte_input : byte_output)[i] != nullptr;
-	case 'W':
-		return (in ? int_input : int_output)[i] != nullptr;
-	case 'D':
-		return (in ? dint_input : dint_output)[i] != nullptr;
+	switch (v.kind) {
+	case Kind::sint:
+		return (int8_t)bits;
+	case Kind::integer:
+		return (int16_t)bits;
+	case Kind::dint:
+		return (int32_t)bits;
+	case Kind::lint:
+		return (double)(int64_t)bits;
+	case Kind::real:
+		return real_of<float, uint32_t>(bits);
+	case Kind::lreal:
+		return real_of<double, uint64_t>(bits);
+	case Kind::boolean:
+	case Kind::good:
+	case Kind::usint:
+	case Kind::uinteger:
+	case Kind::udint:
+		break;
 	}
-	return in && lint_input[i] != nullptr;
+	return (double)bits;
 }
 
 // --- The layer -----------------------------------------------------------------------------------
 
 class Layer {
 public:
-	void start()
+	// given: "" for the map of the environment
+	void start(const std::string &given)
 	{
 		const char *path = std::getenv("OWSD_OPENPLC_MAP");
 
-		map_.read(path ? path : "/etc/owsd/openplc.map");
+		map_ = Map();
+		outputs_ = false;
+		map_.read(!given.empty() ? given : path ? path : "/etc/owsd/openplc.map");
 		for (const Variable &v : map_.variables)
 			outputs_ = outputs_ || v.area == 'Q';
 		say(std::to_string(map_.variables.size()) + " variables of instance " + map_.instance);
@@ -355,9 +477,8 @@ public:
 			handle_ = opening_.get().handle;
 		if (!handle_)
 			return;
-		// OpenPLC has set all outputs to 0 but these
 		for (Variable &v : map_.variables) {
-			if (v.area == 'Q' && v.size == 'D')
+			if (v.area == 'Q' && present(v))
 				set(v, 0);
 		}
 		ows_close(handle_);
@@ -460,7 +581,7 @@ private:
 
 	static uint32_t beat_ms()
 	{
-		unsigned long long three_cycles = common_ticktime__ * 3 / 1000000;
+		unsigned long long three_cycles = cycle_ns() * 3 / 1000000;
 
 		return three_cycles > 1000 ? (uint32_t)three_cycles : 1000;
 	}
@@ -475,19 +596,68 @@ private:
 
 Layer layer;
 
+#ifndef OPENPLC_V4
 class Locked {
 public:
 	Locked() { pthread_mutex_lock(&bufferLock); }
 	~Locked() { pthread_mutex_unlock(&bufferLock); }
 };
+#endif
 
 } // namespace
+
+#ifdef OPENPLC_V4
+
+// What the runtime looks up: all run one after the other, the cycles in its own thread
+extern "C" {
+
+int init(void *args)
+{
+	runtime = *(const plugin_runtime_args_t *)args;
+	try {
+		layer.start(runtime.plugin_specific_config_file_path);
+	} catch (const std::exception &e) {
+		runtime.log_error("owsd: %s", e.what());
+		return -1;
+	}
+	return 0;
+}
+
+// Its README says void, the runtime looks at what is returned
+int start_loop(void)
+{
+	return 0;
+}
+
+void stop_loop(void)
+{
+	layer.stop();
+}
+
+void cycle_start(void)
+{
+	layer.in();
+}
+
+void cycle_end(void)
+{
+	layer.out();
+}
+
+void cleanup(void)
+{
+	layer.stop();
+}
+
+} // extern "C"
+
+#else
 
 // A PLC that does not know its variables is not to run
 void initializeHardware()
 {
 	try {
-		layer.start();
+		layer.start("");
 	} catch (const std::exception &e) {
 		say(e.what());
 		std::exit(EXIT_FAILURE);
@@ -512,3 +682,5 @@ void updateBuffersOut()
 
 	layer.out();
 }
+
+#endif
