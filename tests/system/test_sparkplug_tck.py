@@ -5,21 +5,17 @@ genuine one and is built from its source. It is the broker, and sees each packet
 a genuine broker hands out."""
 
 import contextlib
-import fcntl
 import json
-import os
-import pathlib
 import re
-import shutil
 import signal
-import subprocess
 
+import gobuild
 import owsdtest
 from mqtthouse import MQTT, SENSOR, SWITCH, Broker, item
 from owsdtest import free_port, until
 from test_mqtt_historian import RECORDER, Historian, Machine
 
-MODULE, VERSION = "github.com/joyautomation/sparkplug-tck-go", "8d3410da73a10d8fb81ddae4d68e2ca5d96847b2"
+TCK = ("github.com/joyautomation/sparkplug-tck-go/cmd/sparkplug-tck", "8d3410da73a10d8fb81ddae4d68e2ca5d96847b2")
 PROBE = "28.A0B1C2000009"
 # What it says of a conforming node: (what matches assertion and detail, why). Some only of a life with a
 # second birth, a second connection, commands, or a chip that comes back; there is a life without them.
@@ -35,26 +31,6 @@ AT_TIMES = (
     (r": plant/pi7 DBIRTH/28\.A0B1C2000009 after data flow started", "this chip came back then"),
     (r"seq.*: .*[DN]CMD missing seq", "it counts the host's commands, and a birth begins at 0 again"),
 )
-
-
-def judge():
-    """The program; built once, from the module proxy or from a clone in the cache."""
-    base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd/sparkplug-tck"
-    go = shutil.which("go") or shutil.which("/usr/local/go/bin/go")
-    program, source = base / VERSION[:12] / "sparkplug-tck", base / "source"
-    if program.exists():
-        return program
-    if not go:
-        owsdtest.skip("there is no go")
-    base.mkdir(parents=True, exist_ok=True)
-    with open(base / "lock", "w", encoding="ascii") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        what = ["build", "-o", program, "./cmd/sparkplug-tck"] if source.exists() else ["install", f"{MODULE}/cmd/sparkplug-tck@{VERSION}"]
-        done = subprocess.run([go, *what], cwd=source if source.exists() else base, capture_output=True, text=True, timeout=900,
-                              env={**os.environ, "GOTOOLCHAIN": "local", "CGO_ENABLED": "0", "GOBIN": str(program.parent)})
-    if not program.exists():
-        owsdtest.skip(f"the kit cannot be had; a clone of it may be at {source}: {(done.stderr.strip().splitlines() or ['?'])[-1]}")
-    return program
 
 
 def lives(scene, machine, host, full):
@@ -134,7 +110,7 @@ def accepted(found, full, least):
 
 def by_the_broker(scene, full, least):
     port = free_port()
-    tck = scene.start([judge(), "-harness", "-profile", "edge-node", "-listen", f"127.0.0.1:{port}", "-duration", "10m", "-json"])
+    tck = scene.start([gobuild.program(*TCK), "-harness", "-profile", "edge-node", "-listen", f"127.0.0.1:{port}", "-duration", "10m", "-json"])
     until(lambda: "listening" in tck.log(), 20, tck.log)
     with node(scene, port) as (machine, host):
         lives(scene, machine, host, full)
@@ -142,7 +118,7 @@ def by_the_broker(scene, full, least):
 
 
 def beside_a_broker(scene, full, least):
-    program, broker = judge(), Broker(scene)
+    program, broker = gobuild.program(*TCK), Broker(scene)
     tck = scene.start([program, "-broker", f"tcp://127.0.0.1:{broker.port}", "-duration", "10m", "-json"])
     until(lambda: "SUBSCRIBE" in broker.process.log() and "spBv1.0/# (QoS 1)" in broker.process.log(), 20, broker.process.log)
     with node(scene, broker.port) as (machine, host):
