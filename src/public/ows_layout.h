@@ -379,7 +379,7 @@ struct ows_command_slot { /* 64 bytes */
 	uint32_t read_enable;  /* 0 not commanded; else 4 * count + 1 off, + 2 on */
 	uint32_t write_enable; /* likewise */
 	uint32_t one_shot;     /* counts edges of _WriteOneShot */
-	uint32_t dgn_reset;    /* of _DGNRESET; in steps of OWS_STEP_READ, of _ReadOneShot */
+	uint32_t dgn_reset;    /* likewise of _DGNRESET; in steps of OWS_STEP_READ _ReadOneShot */
 	uint32_t acknowledged; /* counts acknowledgements of the limit alarm */
 	uint32_t spare0[3];
 	/* owsd writes, for this controller to read: */
