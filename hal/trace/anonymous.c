@@ -174,7 +174,7 @@ static void visit_text(struct ids *ids, char *line)
 static size_t get_bytes(const char *question, const char *answer, uint8_t *bytes, size_t *sent)
 {
 	const char *out = question + strlen("run r ");
-	bool selects = begins(out, "55");
+	bool selects = begins(out, "55") && strcspn(out, " ") >= 18;
 	size_t n;
 
 	*sent = trace_parse(out + (selects ? 18 : 0), bytes, SEQUENCE);
@@ -198,7 +198,7 @@ static void visit_line(struct ids *ids, char *line)
 		visit_text(ids, line);
 		return;
 	}
-	if (!question++ || !arrow || arrow < question)
+	if (!question || !arrow || arrow < ++question)
 		return;
 	link = (unsigned)(isdigit((unsigned char)place[1]) ? atoi(place + 1) : LINKS);
 	answer = arrow + 3 + strcspn(arrow + 3, " ");

@@ -202,7 +202,7 @@ static bool cut_line(char *text, struct trace_line *line)
 	line->place = place;
 	line->question = rest + 1;
 	line->answer = arrow + 3;
-	return line->took_ms >= 0 && line->took_ms < 60e3;
+	return line->took_ms >= 0 && line->took_ms < 10e3;
 }
 
 static size_t find_before(const struct trace *trace, const struct trace_line *line)

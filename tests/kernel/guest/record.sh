@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # owsctl record on a real kernel: an I2C adapter, the kernel's drivers and masters, the genuine
-# owserver; what was recorded replays the same table. With a file /rig/traces the recordings are
+# owserver; what was recorded replays the same values. With a file /rig/traces the recordings are
 # printed, as remarks that have their names in front: so those of tests/traces were made.
 . /rig/lib.sh
 . /rig/w1lib.sh
@@ -9,26 +9,24 @@ answers() {
 	owdump 4304 dir / | grep -q '^/28'
 }
 
-# FILE: the table without ids, and without what a replay says of itself
-table() {
-	sed -e 's/ (simulated)//' -e 's/\([0-9A-F][0-9A-F]\)\.[0-9A-F]\{12\}/\1/g' -e 's/  */ /g' $1
-}
+sensor=/28.A0B1C2000028/temperature board=/29.A0B1C2000029/sensed.BYTE
 
 # NAME TARGET [OPTION]
 records() {
-	does "$1 is recorded" owsctl -t $2 record $3 /tmp/$1.trace
-	cp /tmp/said /tmp/$1.table
-	sed -i '/^owsctl:/d' /tmp/$1.table
-	owsctl-sim -t replay:/tmp/$1.trace scan >/tmp/$1.again 2>/tmp/$1.notes
-	same "$1 replays the same table" "$(table /tmp/$1.table)" "$(table /tmp/$1.again)"
-	same "$1 has the answers that it had" "" "$(grep -e 'was .* is' -e 'never asked' /tmp/$1.notes)"
+	does "$1 is recorded" owsctl -t $2 record $3 /tmp/$1.trace read -w 120 $sensor $board
+	grep -v ^owsctl: /tmp/said >/tmp/$1.values
+	owsctl-sim -t replay:/tmp/$1.trace $(sed -n '2s/^# owsctl [^ ]* -t [^ ]* //p' /tmp/$1.trace) \
+		>/tmp/$1.again 2>/tmp/$1.notes
+	same "$1 replays the same values" "$(cat /tmp/$1.values)" "$(cat /tmp/$1.again)"
+	same "$1 asks for nothing else" "" "$(grep -e 'was .* is' -e 'never asked' /tmp/$1.notes)"
 	[ ! -e /rig/traces ] || sed "s/^/# $1.trace: /" /tmp/$1.trace
 }
 
 plug netlink.sim
 records kernel-i2c i2c:/dev/i2c-0 --anonymous
-does "the adapter's bytes are recorded" owsctl -t i2c:/dev/i2c-0:0x19 record --i2c /tmp/bytes.trace
-does "with the bytes of a search" grep -q ' i2c transfer 19 w A5F0' /tmp/bytes.trace
+does "the adapter's bytes are recorded" \
+	owsctl -t i2c:/dev/i2c-0:0x18 record --i2c /tmp/bytes.trace read -w 120 $board
+does "with the bytes that select a chip" grep -q ' i2c transfer 18 w A555' /tmp/bytes.trace
 
 owserver --i2c=/dev/i2c-0:ALL -p 127.0.0.1:4304 --foreground >>/tmp/log/owserver 2>&1 &
 server=$!
