@@ -11,6 +11,7 @@
 #include "hal/trace/trace.h"
 
 #define NOTES 10 /* in all */
+#define TOOK_MOST_MS 10e3
 
 static const struct {
 	const char *name;
@@ -202,7 +203,9 @@ static bool cut_line(char *text, struct trace_line *line)
 	line->place = place;
 	line->question = rest + 1;
 	line->answer = arrow + 3;
-	return line->took_ms >= 0 && line->took_ms < 10e3;
+	if (!(line->took_ms >= 0 && line->took_ms < TOOK_MOST_MS))
+		line->took_ms = TOOK_MOST_MS;
+	return true;
 }
 
 static size_t find_before(const struct trace *trace, const struct trace_line *line)

@@ -41,7 +41,7 @@ rig = tests/kernel/boot --time $(KERNEL_TIME) $(if $(OR_SKIP),--or-skip) $(RIG_O
           $(RIG_GUEST:%=--file %) $(1)
 
 # With OR_SKIP=1 a package that cannot be had does not end it: boot then counts the suites as skipped
-test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers usb usbdaemon record
+test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers usb usbdaemon
 test-kernel:
 	@sh board/install-deps build kernel $(if $(OR_SKIP),|| true)
 	@$(MAKE) --no-print-directory kernel-programs
