@@ -57,6 +57,8 @@
 #   make deb                      Debian packages in build/deb; ARCH=arm64, SUITE=trixie for others
 #   make repository               an apt repository of what make deb made, in build/repository, signed
 #                                 by REPOSITORY_KEY=FINGERPRINT (docs/repository.md)
+#   make addon                    the add-on of Home Assistant, in build/addon, of what make deb made
+#                                 (docs/home-assistant-addon.md); ADDON_URL=https://...
 #   make dist                     the release as a tarball, of what is committed (docs/release.md)
 #   make test-dist                that tarball built and run without git and network
 #   make recipes                  for Alpine, Buildroot and Yocto, of that tarball, in build/recipes;
@@ -316,7 +318,7 @@ PYTHON_MADE := $(if $(PYTHON),$(B)/python/ows.py $(LIBRARIES:%=$(B)/python/%.so.
 LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(l).pc)
 
 .PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
-        deb repository test-package test-service test-fresh dist test-dist clean \
+        deb repository addon test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page devices-page \
         check check-all touched mutate helpers help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(B)/core.a $(B)/with/libraries
@@ -752,6 +754,10 @@ repository:
 	@sh board/install-deps repository
 	@sh board/make-repository $(if $(REPOSITORY),--out $(REPOSITORY)) \
 	    $(if $(REPOSITORY_URL),--url $(REPOSITORY_URL)) $(REPOSITORY_KEY)
+
+# Of packages for Debian 13, and for this machine's Debian with SUITE=bookworm ARCH=amd64
+addon:
+	@sh board/make-addon $(if $(SUITE),--suite $(SUITE)) $(if $(ADDON_URL),--url $(ADDON_URL)) $(ARCH)
 
 test-package:
 	@sh board/install-deps chroot repository $(if $(OR_SKIP),|| true)
