@@ -200,7 +200,7 @@ static void visit_line(struct ids *ids, char *line)
 	}
 	if (!question || !arrow || arrow < ++question)
 		return;
-	link = (unsigned)(isdigit((unsigned char)place[1]) ? atoi(place + 1) : LINKS);
+	link = isdigit((unsigned char)place[1]) ? (unsigned)strtoul(place + 1, NULL, 10) : LINKS;
 	answer = arrow + 3 + strcspn(arrow + 3, " ");
 	answer += *answer != 0;
 	if (begins(question, "run "))

@@ -81,14 +81,18 @@ size_t trace_parse(const char *text, uint8_t *bytes, size_t n)
 	size_t count = 0;
 
 	for (text += quoted; count < n && *text && *text != '"'; count++) {
+		int high, low;
+
 		if (quoted && *text != '\\') {
 			bytes[count] = (uint8_t)*text++;
 			continue;
 		}
 		text += quoted;
-		if (digit(text[0]) < 0 || digit(text[1]) < 0)
+		high = digit(text[0]);
+		low = high < 0 ? -1 : digit(text[1]);
+		if (low < 0)
 			break;
-		bytes[count] = (uint8_t)(digit(text[0]) << 4 | digit(text[1]));
+		bytes[count] = (uint8_t)(high << 4 | low);
 		text += 2;
 	}
 	return count;
@@ -303,7 +307,7 @@ static bool is_same(const char *question, const char *recorded)
 	const char *last = strrchr(question, ' ');
 	size_t len = last ? (size_t)(last - question) + 1 : 0;
 
-	if (strncmp(question, "transfer ", 9) != 0 || last[-1] != 'r')
+	if (!last || strncmp(question, "transfer ", 9) != 0 || last[-1] != 'r')
 		return strcmp(question, recorded) == 0;
 	return strncmp(question, recorded, len) == 0 && !strchr(recorded + len, ' ');
 }
