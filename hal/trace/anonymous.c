@@ -180,7 +180,9 @@ static size_t get_bytes(const char *question, const char *answer, uint8_t *bytes
 	*sent = trace_parse(out + (selects ? 18 : 0), bytes, SEQUENCE);
 	n = *sent;
 	answer += strcspn(answer, " ");
-	return n + trace_parse(answer + (*answer != 0), bytes + n, SEQUENCE - n);
+	answer += *answer != 0;
+	/* a run answers in digits; a text in its place is no recording of owsctl */
+	return *answer == '"' ? n : n + trace_parse(answer, bytes + n, SEQUENCE - n);
 }
 
 static void visit_line(struct ids *ids, char *line)
