@@ -65,7 +65,7 @@ LOOKED_AT = {
     "skopeo": [r"copy oci:build/oci:VERSION-amd64 docker-daemon:localhost/owsd:latest"],
     "podman": [r"pull oci:build/oci:VERSION-arm64"],
     "docker": ["compose up -d", "compose restart owsd", "compose exec owsd owsctl -t auto scan --rio"],
-    "getent": ["group i2c"],
+    "getent": ["group i2c", "group owsd owsd-control"],
     "halrun": [r"-I owsd\.hal"],
     "rpi-image-gen": [r"build -S /path/to/owsd/board/image/rpi-image-gen -c owsd\.yaml"],
 }
