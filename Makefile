@@ -71,7 +71,7 @@
 #   make test-service             the service under systemd in QEMU, with the packages of make deb
 #   make test-image               an image for a Raspberry Pi, booted in QEMU; CASES=main for less
 
-VERSION  := 0.10.0
+VERSION  := 1.0.0
 SOMAJOR  := 1
 B        ?= build
 PREFIX   ?= /usr/local
