@@ -60,12 +60,17 @@ exec chroot . /usr/bin/env -i PATH=/usr/local/sbin:/usr/sbin:/usr/bin:/sbin:/bin
 
 
 class Supervisor(http.server.ThreadingHTTPServer):
-    """broker: the answer of services/mqtt; None: there is none."""
+    """broker: the answer of services/mqtt; None: there is none. One at a time has its port."""
     daemon_threads = True
+    present = None
 
     def __init__(self, broker=None):
         self.broker, self.announced, self.wrong = broker, [], []
+        if Supervisor.present:
+            Supervisor.present.shutdown()
+            Supervisor.present.server_close()
         super().__init__(("127.0.0.1", 80), Answer)
+        Supervisor.present = self
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
 

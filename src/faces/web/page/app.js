@@ -2,7 +2,6 @@
 // Starts the page: the views, and which of them is shown (the address says it).
 import {el} from "./dom.js";
 import * as head from "./head.js";
-import * as keys from "./keys.js";
 import * as live from "./live.js";
 import {store} from "./store.js";
 
@@ -59,6 +58,7 @@ const LATER = [() => both(import("./alarms.js"), "alarms.css"),
 	() => both(import("./about.js"), "views.css")];
 const [alarms, trends, wire, about, config] = [...LATER,
 	() => both(both(import("./config.js"), "views.css"), "config.css")].map(fetched);
+const AFTER = ["./keys.js", "./hour.js", "./tell.js", "./machines.js"];
 const VIEWS = {live, alarms, trends, wire, config, about};
 const LOADING_MS = 300; // until a view that is not there yet says so
 const LATER_MS = 1000; // after the first values: then a lost connection leaves views to look at
@@ -102,10 +102,9 @@ const begin = (name, again = false) => import(name).then((made) => made.begin())
 for (const [key, view] of Object.entries(VIEWS))
 	view.build($(key));
 head.build();
-keys.listen();
 store.addEventListener("signals", show);
 store.addEventListener("signals", () => setTimeout(() =>
-	[...LATER, ...["./hour.js", "./tell.js", "./machines.js"].map((name) => () => begin(name)), keep]
+	[...LATER, ...AFTER.map((name) => () => begin(name)), keep]
 		.forEach((load) => load().catch(() => {})), LATER_MS), {once: true});
 document.querySelector(".skip").addEventListener("click", (event) => {
 	event.preventDefault(); // the part behind # names the view

@@ -68,4 +68,4 @@ function pressed(event) {
 	event.preventDefault();
 }
 
-export const listen = () => document.addEventListener("keydown", pressed);
+export const begin = () => document.addEventListener("keydown", pressed);
