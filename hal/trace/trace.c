@@ -268,6 +268,7 @@ int trace_read(struct trace *trace, const char *name, char *why, size_t why_size
 	}
 	for (const char *at = trace->text; (at = strchr(at, '\n')); at++)
 		count++;
+	trace->lines = 0;
 	trace->line = calloc(count, sizeof(*trace->line));
 	if (!trace->line)
 		return -ENOMEM;
