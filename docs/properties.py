@@ -72,8 +72,8 @@ the {all}. The others are limits of the EDS0080 to EDS0085 and two names, see fa
 
 The native links (a DS2482, `w1:netlink`, the simulator) have all of this alike, because the same code
 is above them. Target `w1` has what the kernel's
-drivers give: column "driver" counts the listed properties that a driver's attributes stand for, "not
-given" those that they do not. Of a chip that has no driver there (`rw`), one write and one read have to do:
+drivers give: column "driver" counts the listed properties that a driver's attributes stand for. Of a chip
+that has no driver there, one write and one read have to do:
 see [w1.md](w1.md#what-there-is). A driver's readings were not compared here.
 """
 
@@ -238,8 +238,10 @@ def page():
         if count["all"] == count["same"] and count["writable"] == count["written same"] and not lacks[family]:
             alike.append(f"{family} ({chip.get(family, '')})")
         else:
-            table.append(row_of([family, chip.get(family, "")] + [count[k] for k in COUNTED + PUT] +
-                                ([count["given"], count["missing"]] if family in given else ["`rw`", ""])))
+            table.append(row_of([family, chip.get(family, "")] + [
+                of and f"{part} of {of}" for part, of in (
+                    (count["same"], count["all"] - count["write-only"]), (count["written same"], count["writable"]),
+                    (count["given"], count["given"] + count["missing"]))]))
         reasons[family] = by_reason(
             [(verdict_of(record), r.property, record[2].removeprefix(REFUSED)) for r, record in mine] +
             [(line.verdict if line.verdict == "not written" else f"written {line.verdict}", name, line.reason)
@@ -258,11 +260,11 @@ def page():
         fill("What no comparison shows. The reasons of each property are further [below](#family-by-family)."),
         "", *[item(f"**{of}**: {note}") for of, note in notes()], "",
         "## How many", "",
-        "| | chip | all | same | differs | cannot be had | not compared | write-only | can be written "
-        "| same | differs | not written | driver | not given |",
-        "|---|---|" + "--:|" * 12, *table,
-        row_of(["all", ""] + [sums[k] for k in (*COUNTED, *PUT, "given", "missing")]), "",
-        fill(f"All is the same, read and written, and counts in the last row alone: {', '.join(alike)}."), "",
+        fill(", ".join(f"{sums[k]} {k}" for k in COUNTED[1:]) + "; of those that can be written " +
+             ", ".join(f"{sums[k]} {k.removeprefix('written ')}" for k in PUT[1:]) + "."), "",
+        "| | chip | read the same | written the same | driver |",
+        "|---|---|---|---|---|", *table, "",
+        fill(f"All is the same, read and written: {', '.join(alike)}."), "",
         "## Family by family", "",
         fill("What is not read, or not written, the same, and why. A letter stands for a reason that more "
              "than two families have. Target `w1` does not list what the driver of the kernel's does not "
