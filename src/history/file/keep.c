@@ -30,8 +30,7 @@ static int delete_before(sqlite3 *db, const char *table, int64_t before)
 	err = sql_errno(db, sqlite3_prepare_v2(db, text, -1, &statement, NULL));
 	if (err)
 		return err;
-	sql_bind(statement, "i", before);
-	err = sql_next(statement);
+	err = sql_run(statement, "i", before);
 	sqlite3_finalize(statement);
 	return err;
 }

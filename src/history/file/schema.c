@@ -102,10 +102,8 @@ static int add_words(sqlite3 *db)
 		sqlite3_stmt *statement;
 
 		err = sql_errno(db, sqlite3_prepare_v2(db, words[i].insert, -1, &statement, NULL));
-		for (int n = words[i].first; !err && n < words[i].end; n++) {
-			sql_bind(statement, "it", (int64_t)n, words[i].text((uint8_t)n));
-			err = sql_next(statement);
-		}
+		for (int n = words[i].first; !err && n < words[i].end; n++)
+			err = sql_run(statement, "it", (int64_t)n, words[i].text((uint8_t)n));
 		sqlite3_finalize(statement);
 	}
 	return err;

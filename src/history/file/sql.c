@@ -45,12 +45,9 @@ int sql_exec(sqlite3 *db, const char *text)
 	return sql_errno(db, sqlite3_exec(db, text, NULL, NULL, NULL));
 }
 
-void sql_bind(sqlite3_stmt *statement, const char *types, ...)
+static void bind_all(sqlite3_stmt *statement, const char *types, va_list args)
 {
-	va_list args;
-
 	sqlite3_reset(statement);
-	va_start(args, types);
 	for (int i = 0; types[i]; i++) {
 		const char *text;
 		double number;
@@ -74,6 +71,14 @@ void sql_bind(sqlite3_stmt *statement, const char *types, ...)
 			sqlite3_bind_null(statement, i + 1);
 		}
 	}
+}
+
+void sql_bind(sqlite3_stmt *statement, const char *types, ...)
+{
+	va_list args;
+
+	va_start(args, types);
+	bind_all(statement, types, args);
 	va_end(args);
 }
 
@@ -88,10 +93,25 @@ int sql_next(sqlite3_stmt *statement)
 	return err;
 }
 
-int sql_number(sqlite3_stmt *statement, int64_t *value)
+int sql_run(sqlite3_stmt *statement, const char *types, ...)
 {
-	int got = sql_next(statement);
+	va_list args;
 
+	va_start(args, types);
+	bind_all(statement, types, args);
+	va_end(args);
+	return sql_next(statement);
+}
+
+int sql_number(sqlite3_stmt *statement, int64_t *value, const char *types, ...)
+{
+	va_list args;
+	int got;
+
+	va_start(args, types);
+	bind_all(statement, types, args);
+	va_end(args);
+	got = sql_next(statement);
 	if (got == 1 && sqlite3_column_type(statement, 0) != SQLITE_NULL)
 		*value = sqlite3_column_int64(statement, 0);
 	sqlite3_reset(statement);
@@ -105,7 +125,7 @@ int sql_ask(sqlite3 *db, const char *text, int64_t *value)
 
 	if (err)
 		return err;
-	err = sql_number(statement, value);
+	err = sql_number(statement, value, "");
 	sqlite3_finalize(statement);
 	return err;
 }

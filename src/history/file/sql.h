@@ -20,7 +20,9 @@ int sql_exec(sqlite3 *db, const char *text);
 void sql_bind(sqlite3_stmt *statement, const char *types, ...);
 /* The next row: 1; 0: none, and the statement is reset; or a negative errno, likewise. */
 int sql_next(sqlite3_stmt *statement);
-/* The first column of the first row; *value stays if that is null. 1, 0: no row, or an error. */
-int sql_number(sqlite3_stmt *statement, int64_t *value);
+/* Bind, and the first row. */
+int sql_run(sqlite3_stmt *statement, const char *types, ...);
+/* The same, and its first column; *value stays if that is null. The statement is reset. */
+int sql_number(sqlite3_stmt *statement, int64_t *value, const char *types, ...);
 /* The same of a text; prepared for this once. */
 int sql_ask(sqlite3 *db, const char *text, int64_t *value);

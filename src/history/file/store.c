@@ -12,12 +12,6 @@
 
 #define SEEN_US (10 * MINUTE_US) /* so often the file says that the recorder looks */
 
-static int store_run(struct history_store *store, enum statement which)
-{
-	sqlite3_reset(store->statements[which]);
-	return sql_next(store->statements[which]);
-}
-
 /*
  * --- The file ----------------------------------------------------------------------------------
  */
@@ -72,7 +66,7 @@ static void store_fail(struct history_store *store, struct store_batch *batch, i
 	store->gap_us = -1;
 	if (!store->file.db)
 		return;
-	store_run(store, S_ROLLBACK);
+	sql_run(store->statements[S_ROLLBACK], "");
 	if (err == -ENOSPC || err == -EAGAIN || err == -ENOMEM)
 		return;
 	close_file(store);
@@ -114,8 +108,7 @@ static int replay(struct history_store *store)
 	int64_t since = 0;
 	int got;
 
-	sqlite3_reset(store->statements[S_SINCE]);
-	got = sql_number(store->statements[S_SINCE], &since);
+	got = sql_number(store->statements[S_SINCE], &since, "");
 	if (got < 0)
 		return got;
 	sums_begin(&store->sums, since / HOUR_US);
@@ -144,12 +137,9 @@ static int read_place(struct history_store *store)
 	int got;
 
 	store->last_id = 0;
-	sqlite3_reset(store->statements[S_LAST]);
-	got = sql_number(store->statements[S_LAST], &store->last_id);
-	if (got >= 0) {
-		sql_bind(store->statements[S_OURS], "ii", store->start, store->boot);
-		got = sql_number(store->statements[S_OURS], &ours);
-	}
+	got = sql_number(store->statements[S_LAST], &store->last_id, "");
+	if (got >= 0)
+		got = sql_number(store->statements[S_OURS], &ours, "ii", store->start, store->boot);
 	if (got >= 0 && !ours)
 		store->start = 0;
 	got = got < 0 ? got : replay(store);
@@ -180,10 +170,8 @@ static int begin_run(struct history_store *store, const struct store_batch *batc
 	sqlite3_stmt *before = store->statements[S_BEFORE];
 	int64_t us = batch->begin_us, start = us + batch->offset_us, last = store->last_id;
 	bool any, same = false;
-	int got;
+	int got = sql_run(before, "");
 
-	sqlite3_reset(before);
-	got = sql_next(before);
 	if (got < 0)
 		return got;
 	any = got == 1;
@@ -194,8 +182,7 @@ static int begin_run(struct history_store *store, const struct store_batch *batc
 	sqlite3_reset(before);
 	if (start <= last + 1)
 		start = last + 2;
-	sql_bind(store->statements[S_END_GAP], "i", start);
-	got = sql_next(store->statements[S_END_GAP]);
+	got = sql_run(store->statements[S_END_GAP], "i", start);
 	if (!got && any && !sqlite3_changes(store->file.db))
 		got = add_gap(store, last + 1, 0, start, OWS_HISTORY_LOST);
 	if (got)
@@ -205,9 +192,8 @@ static int begin_run(struct history_store *store, const struct store_batch *batc
 	store->base = start - us;
 	store->seen_us = us;
 	store->begun++;
-	sql_bind(store->statements[S_SESSION], "iiiii", start, store->boot, store->base,
-	         batch->offset_us - store->base, (int64_t)batch->trusted);
-	return sql_next(store->statements[S_SESSION]);
+	return sql_run(store->statements[S_SESSION], "iiiii", start, store->boot, store->base,
+	               batch->offset_us - store->base, (int64_t)batch->trusted);
 }
 
 static int name_key(struct history_store *store, struct history_key *key)
@@ -218,18 +204,15 @@ static int name_key(struct history_store *store, struct history_key *key)
 
 	if (key->number)
 		return 0;
-	sql_bind(store->statements[S_FIND], "tt", key->identity, key->name);
-	got = sql_number(store->statements[S_FIND], &number);
+	got = sql_number(store->statements[S_FIND], &number, "tt", key->identity, key->name);
 	if (got < 0)
 		return got;
-	sql_bind(store->statements[S_TAKE], "ti", key->name, number);
-	got = sql_next(store->statements[S_TAKE]);
+	got = sql_run(store->statements[S_TAKE], "ti", key->name, number);
 	if (got)
 		return got;
-	sql_bind(store->statements[both[!number]], number ? "ttiiiti" : "ttiiit", key->name,
-	         key->unit, (int64_t)key->type, (int64_t)key->output, (int64_t)key->decimals,
-	         key->identity, number);
-	got = sql_next(store->statements[both[!number]]);
+	got = sql_run(store->statements[both[!number]], number ? "ttiiiti" : "ttiiit", key->name,
+	              key->unit, (int64_t)key->type, (int64_t)key->output, (int64_t)key->decimals,
+	              key->identity, number);
 	if (got)
 		return got;
 	if (!number)
@@ -288,10 +271,8 @@ static int put_gap(struct history_store *store, struct history_key *key,
 			start = store->start + 1;
 		return add_gap(store, start, key->number, 0, row->reason);
 	}
-	if (row->us == store->gap_us && row->reason == store->gap_reason) {
-		sql_bind(store->statements[S_LONGER], "ii", until, store->gap_start);
-		return sql_next(store->statements[S_LONGER]);
-	}
+	if (row->us == store->gap_us && row->reason == store->gap_reason)
+		return sql_run(store->statements[S_LONGER], "ii", until, store->gap_start);
 	start = store->last_id = next_id(store, row->us);
 	store->gap_us = row->us;
 	store->gap_start = start;
@@ -369,9 +350,8 @@ static int put_seen(struct history_store *store, const struct store_batch *batch
 	if (!store->start || id <= store->last_id)
 		return 0;
 	if (batch->count == 0 && batch->seen_us - store->seen_us >= SEEN_US) {
-		sql_bind(store->statements[S_SEEN], "ii", id, store->start);
 		store->last_id = id;
-		err = sql_next(store->statements[S_SEEN]);
+		err = sql_run(store->statements[S_SEEN], "ii", id, store->start);
 	}
 	if (batch->count || batch->seen_us - store->seen_us >= SEEN_US)
 		store->seen_us = batch->seen_us;
@@ -392,7 +372,7 @@ int store_commit(struct history_store *store, struct store_batch *batch)
 	bool begun = false;
 
 	if (!err) {
-		err = store_run(store, S_BEGIN);
+		err = sql_run(store->statements[S_BEGIN], "");
 		begun = !err;
 	}
 	if (!err && store->stale)
@@ -401,16 +381,14 @@ int store_commit(struct history_store *store, struct store_batch *batch)
 		err = put_row(store, batch, &batch->rows[i]);
 	if (!err)
 		err = put_seen(store, batch);
-	if (!err) {
-		sql_bind(store->statements[S_DATE], "iii", batch->offset_us,
-		         (int64_t)batch->trusted, store->boot);
-		err = sql_next(store->statements[S_DATE]);
-	}
+	if (!err)
+		err = sql_run(store->statements[S_DATE], "iii", batch->offset_us,
+		              (int64_t)batch->trusted, store->boot);
 	if (!err)
 		err = keep_delete(&store->keep, store->file.db, store->file.directory,
 		                  store->last_id);
 	if (!err && begun)
-		err = store_run(store, S_COMMIT);
+		err = sql_run(store->statements[S_COMMIT], "");
 	if (err) {
 		store_fail(store, batch, err);
 		store->begun = files;
@@ -432,8 +410,9 @@ int store_known(struct history_store *store, int64_t *alarms_ns, int64_t *comman
 		*to[i] = 0;
 		if (err)
 			continue;
-		sql_bind(store->statements[S_KNOWN], "ii", store->boot, (int64_t)kinds[i]);
-		err = sql_number(store->statements[S_KNOWN], &us) < 0 ? -EIO : 0;
+		if (sql_number(store->statements[S_KNOWN], &us, "ii", store->boot,
+		               (int64_t)kinds[i]) < 0)
+			err = -EIO;
 		if (!err && us >= 0)
 			*to[i] = us * 1000 + 999;
 	}

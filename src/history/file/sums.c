@@ -27,8 +27,8 @@ static int put_minutes(struct sums *sums, int64_t hour, uint32_t signal, struct 
 	int err = 0;
 
 	if (minutes_pack(minutes, text)) {
-		sql_bind(sums->statements[S_MINUTES], "it", schema_minutes(hour, signal), text);
-		err = sql_next(sums->statements[S_MINUTES]);
+		err = sql_run(sums->statements[S_MINUTES], "it", schema_minutes(hour, signal),
+		              text);
 	} else {
 		for (int i = 0; !err && i < MINUTES; i++)
 			if (minutes[i].there)

@@ -148,10 +148,8 @@ static int read_sum(const struct draw *d, enum handle_statement which, int64_t i
                     struct minute *row)
 {
 	sqlite3_stmt *from = d->h->statements[which];
-	int got;
+	int got = sql_run(from, "i", id);
 
-	sql_bind(from, "i", id);
-	got = sql_next(from);
 	if (got == 1)
 		*row = (struct minute){
 			.least = sqlite3_column_type(from, 0) == SQLITE_NULL
@@ -176,12 +174,9 @@ static int read_minutes(const struct draw *d, int64_t hour, struct minute minute
 {
 	sqlite3_stmt *from = d->h->statements[H_MINUTES];
 	uint32_t signal = d->signal->number;
-	const char *text;
-	int got;
+	int got = sql_run(from, "i", schema_minutes(hour, signal));
+	const char *text = got == 1 ? (const char *)sqlite3_column_text(from, 0) : NULL;
 
-	sql_bind(from, "i", schema_minutes(hour, signal));
-	got = sql_next(from);
-	text = got == 1 ? (const char *)sqlite3_column_text(from, 0) : NULL;
 	if (text) {
 		got = minutes_unpack(text, minutes);
 		sqlite3_reset(from);

@@ -107,17 +107,14 @@ int handle_held(struct ows_history *h, const struct known_signal *signal, int64_
 {
 	sqlite3_stmt *raw = h->statements[H_RAW], *gap = h->statements[H_GAPS];
 	struct step unknown = {.id = INT64_MIN};
-	int got;
+	int got = sql_run(gap, "ii", id, (int64_t)signal->number);
 
-	sql_bind(gap, "ii", id, (int64_t)signal->number);
-	got = sql_next(gap);
 	if (got == 1)
 		got = steps_take(gap, signal, &unknown);
 	sqlite3_reset(gap);
 	if (got < 0)
 		return got;
-	sql_bind(raw, "iii", id, id - LOOK_BACK_US, (int64_t)signal->number);
-	got = sql_next(raw);
+	got = sql_run(raw, "iii", id, id - LOOK_BACK_US, (int64_t)signal->number);
 	if (got == 1) {
 		got = steps_take(raw, signal, step);
 		got = got < 0 ? got : 1;
