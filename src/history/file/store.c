@@ -12,9 +12,7 @@
 
 #define SEEN_US (10 * MINUTE_US) /* so often the file says that the recorder looks */
 
-/*
- * --- The file ----------------------------------------------------------------------------------
- */
+/* --- The file -------------------------------------------------------------------------------- */
 
 void store_begin(struct history_store *store)
 {
@@ -74,9 +72,7 @@ static void store_fail(struct history_store *store, struct store_batch *batch, i
 		file_put_aside(&store->file);
 }
 
-/*
- * --- What the file has -------------------------------------------------------------------------
- */
+/* --- What the file has ----------------------------------------------------------------------- */
 
 static struct rollup_state state_of_value(uint8_t type, int64_t value, uint8_t quality)
 {
@@ -147,9 +143,7 @@ static int read_place(struct history_store *store)
 	return got < 0 ? got : 0;
 }
 
-/*
- * --- What comes --------------------------------------------------------------------------------
- */
+/* --- What comes ------------------------------------------------------------------------------ */
 
 static int add_gap(struct history_store *store, int64_t start, uint32_t signal, int64_t until,
                    uint8_t reason)

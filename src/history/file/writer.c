@@ -95,9 +95,7 @@ static void writer_add(struct history_writer *w, struct history_row row)
 		w->urgent_us = row.us;
 }
 
-/*
- * --- What the recorder says --------------------------------------------------------------------
- */
+/* --- What the recorder says ------------------------------------------------------------------ */
 
 /* Among the first keys; mostly it is the one that is guessed. */
 static int find_key(const struct history_writer *w, const char *identity, uint32_t count,
@@ -289,9 +287,7 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
 	w->trusted = trusted;
 }
 
-/*
- * --- To the file -------------------------------------------------------------------------------
- */
+/* --- To the file ----------------------------------------------------------------------------- */
 
 /* All values that hold, again: those that have no row for an hour, or all of them. */
 static void repeat_values(struct history_writer *w, int64_t now_us, bool all)

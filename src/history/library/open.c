@@ -68,9 +68,7 @@ int ows_history_place(const char *instance, char *path, size_t size)
 	return 0;
 }
 
-/*
- * --- The file ----------------------------------------------------------------------------------
- */
+/* --- The file -------------------------------------------------------------------------------- */
 
 static int64_t spent_ns(void)
 {
@@ -193,9 +191,7 @@ static int open_file(struct ows_history *h)
 	return err;
 }
 
-/*
- * --- What it has -------------------------------------------------------------------------------
- */
+/* --- What it has ----------------------------------------------------------------------------- */
 
 static void open_forget(struct ows_history *h)
 {

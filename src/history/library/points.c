@@ -87,9 +87,7 @@ static struct rollup_state state_of_step(const struct step *step)
 	};
 }
 
-/*
- * --- Of its values -----------------------------------------------------------------------------
- */
+/* --- Of its values --------------------------------------------------------------------------- */
 
 static int draw_steps(struct draw *d, int64_t first, int64_t end)
 {
@@ -122,9 +120,7 @@ static int draw_steps(struct draw *d, int64_t first, int64_t end)
 	return got;
 }
 
-/*
- * --- Of roll-ups -------------------------------------------------------------------------------
- */
+/* --- Of roll-ups ----------------------------------------------------------------------------- */
 
 static int64_t column_us(sqlite3_stmt *from, int column)
 {
@@ -254,9 +250,7 @@ static int draw_minutes(struct draw *d, int64_t first, int64_t end)
 	return err;
 }
 
-/*
- * --- All of it ---------------------------------------------------------------------------------
- */
+/* --- All of it ------------------------------------------------------------------------------- */
 
 /* Where hours end and minutes begin, and where these end: of what there is, of what is enough. */
 static void choose_sources(const struct draw *d, int64_t *hours, int64_t *minutes)

@@ -64,9 +64,7 @@ int handle_signal(const struct ows_history *h, int64_t number)
 	return -1;
 }
 
-/*
- * --- Steps -------------------------------------------------------------------------------------
- */
+/* --- Steps ----------------------------------------------------------------------------------- */
 
 int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step)
 {
@@ -154,9 +152,7 @@ int handle_steps(struct ows_history *h, const struct known_signal *signal, int64
 	return count;
 }
 
-/*
- * --- Items -------------------------------------------------------------------------------------
- */
+/* --- Items ----------------------------------------------------------------------------------- */
 
 int ows_history_read(struct ows_history *h, int signal, int64_t from_ns, int64_t until_ns)
 {
