@@ -151,7 +151,6 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 	int err;
 
 	stats_served(h, now->boot, served);
-	json_object(json, NULL);
 	stats_whose(json, instance);
 	json_object(json, "daemon");
 	json_int(json, "pid", daemon->pid);
@@ -201,5 +200,4 @@ void stats_json(struct json *json, const char *instance, struct ows *h,
 	}
 	json_array_end(json);
 	faces_json(json, "faces", instance, now);
-	json_object_end(json);
 }

@@ -24,8 +24,8 @@ enum device_health *stats_healths(struct ows *h, int64_t now_ns);
 const char *stats_power(uint32_t power);
 /* Does the target of the device say what requests cost? Else retries and wire_us mean nothing. */
 bool stats_device_costs(const struct ows_device *device);
-/* All of it as an object. */
 /* The members "instance" and "host": which owsd, of which machine. */
 void stats_whose(struct json *json, const char *instance);
+/* All of it as members of an object. */
 void stats_json(struct json *json, const char *instance, struct ows *h,
                 const struct ows_daemon *daemon, const struct when *now);

@@ -49,7 +49,7 @@ static bool may(const struct request *request, enum person_deed deed, char perso
 	                     http_named(request), person, &why);
 }
 
-static int answer_info(struct request *request)
+static void put_info(struct json *json, const struct request *request)
 {
 	const struct web *web = request->web;
 	char person[PERSON] = "";
@@ -57,39 +57,32 @@ static int answer_info(struct request *request)
 	struct ows_log_line refused;
 	bool writable;
 	int64_t now_ns = ows_now();
-	char *text;
-	size_t len;
-	struct json json;
 
-	if (!json_start(&json, &text, &len))
-		return MHD_NO;
 	if (web->face->live)
 		ows_daemon(web->face->ows, now_ns, &daemon);
-	stats_whose(&json, web->face->arguments->instance);
-	json_string(&json, "version", OWSD_VERSION);
-	put_machine(&json);
-	json_bool(&json, "live", web->face->live);
-	json_uint(&json, "generation", web->generation);
+	stats_whose(json, web->face->arguments->instance);
+	json_string(json, "version", OWSD_VERSION);
+	put_machine(json);
+	json_bool(json, "live", web->face->live);
+	json_uint(json, "generation", web->generation);
 	if (web->face->live)
-		json_seconds(&json, "up", now_ns - daemon.start_ns);
+		json_seconds(json, "up", now_ns - daemon.start_ns);
 	else
-		json_null(&json, "up");
-	json_string(&json, "refused",
+		json_null(json, "up");
+	json_string(json, "refused",
 	            web->face->live && ows_refused_reload(web->face->ows, &refused) == 0
 	                    ? refused.text
 	                    : NULL);
-	json_int(&json, "now", show_wall_ms(now_ns));
-	json_int(&json, "since", web->since_ns / NS_PER_MS);
+	json_int(json, "now", show_wall_ms(now_ns));
+	json_int(json, "since", web->since_ns / NS_PER_MS);
 	writable = may(request, PERSON_WRITE, person);
-	json_bool(&json, "writable", writable);
-	json_bool(&json, "configurable", may(request, PERSON_CONFIGURE, person));
-	json_string(&json, "person", *person ? person : NULL);
-	json_bool(&json, "history",
+	json_bool(json, "writable", writable);
+	json_bool(json, "configurable", may(request, PERSON_CONFIGURE, person));
+	json_string(json, "person", *person ? person : NULL);
+	json_bool(json, "history",
 	          past_is_there(web->face->arguments->instance, web->face->config));
-	json_int(&json, "signals", web->recent.count);
-	json_uint(&json, "others", others_count(web->others));
-	json_finish(&json);
-	return http_json(request, 200, text, len);
+	json_int(json, "signals", web->recent.count);
+	json_uint(json, "others", others_count(web->others));
 }
 
 /* --- Metrics --------------------------------------------------------------------------------- */
@@ -112,9 +105,6 @@ static int answer_metrics(struct request *request)
 	const struct web *web = request->web;
 	struct stream stream = {.fill = put_metrics, .position.generation = web->generation};
 
-	if (!web->face->ows)
-		return http_error(request, 503, "owsd %s has not run yet: start it",
-		                  web->face->arguments->instance);
 	return stream_answer(request, METRICS_TYPE, &stream);
 }
 
@@ -160,31 +150,38 @@ static int answer_signals(struct request *request)
 	const struct web *web = request->web;
 	struct stream stream = {.fill = put_signals, .position.generation = web->generation};
 
-	if (!web->face->ows || (web->face->live && !look_is_current(web->face)))
-		return http_error(request, 503, "owsd %s %s", web->face->arguments->instance,
-		                  web->face->ows ? "reloads its file: ask again in a second"
-		                                 : "has not run yet: start it");
+	if (web->face->live && !look_is_current(web->face))
+		return http_error(request, 503, "owsd %s reloads its file: ask again in a second",
+		                  web->face->arguments->instance);
 	return stream_answer(request, "application/json", &stream);
 }
 
 /* --- Paths ----------------------------------------------------------------------------------- */
 
-static const struct {
-	const char *path;
-	bool post;
-	web_function function;
-} paths[] = {
-	{"api/info", false, answer_info},         {"api/signals", false, answer_signals},
-	{"api/events", false, events_answer},     {"api/alarms", false, lists_alarms},
-	{"api/stats", false, lists_stats},        {"api/log", false, lists_log},
-	{"api/special", false, special_get},      {"api/journal", false, past_journal},
-	{"api/trend", false, past_trend},         {"api/hour", false, past_hour},
-	{"api/records", false, past_records},     {"api/set", true, command_set},
-	{"api/alarm", true, command_alarm},       {"api/config", false, stored_get},
-	{"api/config/keys", false, stored_keys},  {"api/config/draft", true, draft_post},
-	{"api/config/save", true, save_post},     {"api/config/restore", true, save_restore},
-	{"api/summary", false, machines_summary}, {"api/others", false, machines_others},
-	{"metrics", false, answer_metrics},       {"api/devices", false, devices_get},
+static const struct web_path paths[] = {
+	{"api/info", .put = put_info},
+	{"api/signals", .need = WEB_IMAGE, .answer = answer_signals},
+	{"api/events", .answer = events_answer},
+	{"api/alarms", .need = WEB_OWSD, .put = lists_alarms},
+	{"api/stats", .need = WEB_OWSD, .put = lists_stats},
+	/* also of an owsd that has ended: why it did stands there */
+	{"api/log", .need = WEB_IMAGE, .put = lists_log},
+	{"api/special", .need = WEB_OWSD, .answer = special_get},
+	{"api/journal", .answer = past_journal},
+	{"api/trend", .answer = past_trend},
+	{"api/hour", .answer = past_hour},
+	{"api/records", .answer = past_records},
+	{"api/set", .post = true, .answer = command_set},
+	{"api/alarm", .post = true, .answer = command_alarm},
+	{"api/config", .answer = stored_get},
+	{"api/config/keys", .put = stored_keys},
+	{"api/config/draft", .post = true, .answer = draft_post},
+	{"api/config/save", .post = true, .answer = save_post},
+	{"api/config/restore", .post = true, .answer = save_restore},
+	{"api/summary", .put = machines_summary},
+	{"api/others", .put = machines_others},
+	{"api/devices", .answer = devices_get},
+	{"metrics", .need = WEB_IMAGE, .answer = answer_metrics},
 };
 
 bool api_admits(const struct request *request, const char *path)
@@ -194,10 +191,10 @@ bool api_admits(const struct request *request, const char *path)
 	return head_large(path) && !guard_post(request, PERSON_CONFIGURE, person, words);
 }
 
-web_function api_find(const char *path, bool post)
+const struct web_path *api_find(const char *path, bool post)
 {
 	for (size_t i = 0; i < sizeof(paths) / sizeof(paths[0]); i++)
 		if (paths[i].post == post && strcmp(paths[i].path, path) == 0)
-			return paths[i].function;
+			return &paths[i];
 	return NULL;
 }

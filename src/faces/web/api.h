@@ -4,8 +4,8 @@
 
 #include "src/faces/web/web.h"
 
-/* The function of a path (without the first "/"); NULL: there is none. */
-web_function api_find(const char *path, bool post);
+/* A path (without the first "/"); NULL: there is none. */
+const struct web_path *api_find(const char *path, bool post);
 /*
  * May a body be large that comes there, with the "/"? Only that of a configuration, by a person who
  * may edit it. Looks at the head alone.

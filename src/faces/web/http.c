@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/faces/kit/look.h"
+#include "src/faces/show/json.h"
 #include "src/faces/web/head.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/origin.h"
@@ -205,17 +207,39 @@ static bool is_foreign(const struct request *request)
 	                      http_header(request, "Sec-Fetch-Site"));
 }
 
+static int answer_path(struct request *request, const struct web_path *path)
+{
+	const struct face *face = request->web->face;
+	struct json json;
+	char *text;
+	size_t len;
+
+	if (path->need == WEB_IMAGE && !face->ows)
+		return http_error(request, 503, "owsd %s has not run yet: start it",
+		                  face->arguments->instance);
+	if (path->need == WEB_OWSD && !look_is_current(face))
+		return http_error(request, 503, "owsd %s is not running: start it",
+		                  face->arguments->instance);
+	if (path->answer)
+		return path->answer(request);
+	if (!json_start(&json, &text, &len))
+		return MHD_NO;
+	path->put(&json, request);
+	json_finish(&json);
+	return http_json(request, 200, text, len);
+}
+
 static int answer(struct request *request, const char *url, bool post)
 {
-	web_function function = request->web->route(url + 1, post);
+	const struct web_path *path = request->web->route(url + 1, post);
 
 	/* the files of the page may be asked for from anywhere, as by a link to it */
-	if ((function || post) && is_foreign(request))
+	if ((path || post) && is_foreign(request))
 		return http_error(request, 403,
 		                  "this request comes from another page: open that "
 		                  "of this owsd-web itself");
-	if (function)
-		return function(request);
+	if (path)
+		return answer_path(request, path);
 	if (post)
 		return http_error(request, 404, "there is no such path to post to");
 	return answer_file(request, url + 1);

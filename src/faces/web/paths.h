@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* The functions behind the paths (api.c); each answers its request, as web_function does. */
+/* The functions behind the paths (api.c), as struct web_path has them. */
 #pragma once
 
 struct request;
+struct json;
 
 /* What owsd has now besides values: present alarms, targets, counters, the log. */
-int lists_alarms(struct request *request);
-int lists_stats(struct request *request);
-int lists_log(struct request *request);
+void lists_alarms(struct json *json, const struct request *request);
+void lists_stats(struct json *json, const struct request *request);
+void lists_log(struct json *json, const struct request *request);
 
 /* This machine in a line, and what the pages of others say of theirs. */
-int machines_summary(struct request *request);
-int machines_others(struct request *request);
+void machines_summary(struct json *json, const struct request *request);
+void machines_others(struct json *json, const struct request *request);
 
 /* GET api/special?name=: the special signals of a signal. */
 int special_get(struct request *request);
@@ -32,4 +33,4 @@ int save_restore(struct request *request);
 
 /* The configuration as it is on disk, and the table of its keys. */
 int stored_get(struct request *request);
-int stored_keys(struct request *request);
+void stored_keys(struct json *json, const struct request *request);

@@ -129,15 +129,8 @@ int stored_get(struct request *request)
 	return http_defer(request, http_worker(request->web, &request->web->drafts), &stored->job);
 }
 
-int stored_keys(struct request *request)
+void stored_keys(struct json *json, const struct request *request)
 {
-	char *text;
-	size_t len;
-	struct json json;
-
-	if (!json_start(&json, &text, &len))
-		return MHD_NO;
-	model_keys(&json);
-	json_finish(&json);
-	return http_json(request, 200, text, len);
+	(void)request;
+	model_keys(json);
 }

@@ -17,9 +17,24 @@
 
 #define WEB_ALARMS 64 /* the last ones, for streams that are behind */
 
-/* The function of a path; it answers the request, and returns what libmicrohttpd wants. */
 struct request;
-typedef int (*web_function)(struct request *request);
+struct json;
+
+/* What is behind a path. */
+struct web_path {
+	const char *path; /* without the first "/" */
+	bool post;
+	/* of owsd; without it the request is refused */
+	enum web_need {
+		WEB_NOTHING,
+		WEB_IMAGE, /* the last image, though owsd may have ended */
+		WEB_OWSD,
+	} need;
+	/* Answers the request, and returns what libmicrohttpd wants; or */
+	int (*answer)(struct request *request);
+	/* writes the members of the object that is the answer. */
+	void (*put)(struct json *json, const struct request *request);
+};
 
 struct MHD_Daemon;
 struct stream;
@@ -28,7 +43,7 @@ struct others;
 
 struct web {
 	struct face *face;
-	web_function (*route)(const char *path, bool post); /* NULL: there is no such path */
+	const struct web_path *(*route)(const char *path, bool post); /* NULL: there is none */
 	/* May a body be large that comes to that path? */
 	bool (*admits)(const struct request *request, const char *path);
 	struct MHD_Daemon *daemon;

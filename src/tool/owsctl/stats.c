@@ -194,7 +194,9 @@ int verb_stats(struct ctl *ctl, int argc, char **argv)
 	ctl_alive(ctl, h, now.boot);
 	if (ctl->json) {
 		json_open(&json, stdout);
+		json_object(&json, NULL);
 		stats_json(&json, ctl->instance, h, &daemon, &now);
+		json_object_end(&json);
 		json_end(&json);
 	} else {
 		print_text(ctl, h, &daemon, &now);
