@@ -266,7 +266,7 @@ endef
 SOURCES  := $(wildcard src/*/*/*.c src/*/*/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what must be in no other program; and what calls libmicrohttpd
 WEB_ALONE := src/faces/web/no_tls.c src/faces/web/wire.c
-WEB_HTTP := $(WEB_ALONE) $(patsubst %,src/faces/web/%.c,api command devices draft events guard http lists past save stored stream)
+WEB_HTTP := $(WEB_ALONE) $(patsubst %,src/faces/web/%.c,api command devices draft events http lists past save stored stream)
 # Of owsd-mqtt: what calls libmosquitto
 MQTT_ALL := $(patsubst %,src/faces/mqtt/%.c,mqtt arrivals broker client advice)
 # The consumers' library

@@ -12,14 +12,12 @@
 #include "src/faces/web/api.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/events.h"
-#include "src/faces/web/guard.h"
 #include "src/faces/web/head.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/others.h"
 #include "src/faces/web/past.h"
 #include "src/faces/web/paths.h"
 #include "src/faces/web/person.h"
-#include "src/faces/web/places.h"
 #include "src/faces/web/show.h"
 #include "src/faces/web/stream.h"
 #include "src/ground/board/files.h"
@@ -186,9 +184,10 @@ static const struct web_path paths[] = {
 
 bool api_admits(const struct request *request, const char *path)
 {
-	char person[PERSON], words[GUARD_WORDS];
+	const char *why;
+	char person[PERSON];
 
-	return head_large(path) && !guard_post(request, PERSON_CONFIGURE, person, words);
+	return head_large(path) && !guard_post(request, PERSON_CONFIGURE, person, &why);
 }
 
 const struct web_path *api_find(const char *path, bool post)

@@ -12,7 +12,6 @@
 #include "src/faces/kit/command.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/names.h"
-#include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/paths.h"
 #include "src/ground/signal/value.h"
@@ -255,11 +254,11 @@ static void run_alarm(struct job *job)
 /* False after answering. */
 static bool may(struct request *request, struct order *order, int *result)
 {
-	char words[GUARD_WORDS];
-	unsigned status = guard_post(request, PERSON_WRITE, order->person, words);
+	const char *why;
+	unsigned status = guard_post(request, PERSON_WRITE, order->person, &why);
 
 	if (status)
-		*result = http_error(request, status, "%s", words);
+		*result = http_error(request, status, "%s", why);
 	else if (body_parse(order->job.posted.bytes, order->job.posted.len, &order->body))
 		*result = http_error(request, 400,
 		                     "expected a JSON object, such as {\"name\":\"pump\","

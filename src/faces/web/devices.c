@@ -9,7 +9,6 @@
 #include "hal/base/time.h"
 #include "hal/owfs/path.h"
 #include "src/faces/web/child.h"
-#include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/paths.h"
 #include "src/faces/web/person.h"
@@ -100,12 +99,13 @@ int devices_get(struct request *request)
 	struct web *web = request->web;
 	const char *ids = http_argument(request, "ids");
 	struct devices *devices;
-	char person[PERSON], words[GUARD_WORDS];
+	const char *why;
+	char person[PERSON];
 	/* it loads the wire */
-	unsigned status = guard_person(request, PERSON_CONFIGURE, person, words);
+	unsigned status = guard_person(request, PERSON_CONFIGURE, person, &why);
 
 	if (status)
-		return http_error(request, status, "%s", words);
+		return http_error(request, status, "%s", why);
 	if (!web->face->live)
 		return http_error(
 			request, 503,

@@ -12,7 +12,6 @@
 #include "src/faces/web/child.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/draft_edit.h"
-#include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/model.h"
 #include "src/faces/web/writer.h"
@@ -205,11 +204,12 @@ static void draft_run(struct job *job)
 
 int draft_post(struct request *request)
 {
-	char person[PERSON], words[GUARD_WORDS];
-	unsigned status = guard_post(request, PERSON_CONFIGURE, person, words);
+	const char *why;
+	char person[PERSON];
+	unsigned status = guard_post(request, PERSON_CONFIGURE, person, &why);
 
 	if (status)
-		return http_error(request, status, "%s", words);
+		return http_error(request, status, "%s", why);
 	if (request->posted.dropped)
 		return http_error(request, 503, DRAFT_BUSY);
 	return http_defer(request, http_worker(request->web, &request->web->drafts),

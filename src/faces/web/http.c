@@ -3,8 +3,10 @@
 #include <errno.h>
 #include <microhttpd.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -428,4 +430,37 @@ void http_close(struct web *web)
 	if (web->daemon)
 		MHD_stop_daemon(web->daemon);
 	web->daemon = NULL;
+}
+
+/* --- Rights ---------------------------------------------------------------------------------- */
+
+static bool is_json(const char *type)
+{
+	size_t len = strlen("application/json");
+
+	return type && strncasecmp(type, "application/json", len) == 0 &&
+	       (!type[len] || type[len] == ';' || type[len] == ' ');
+}
+
+unsigned guard_person(const struct request *request, enum person_deed deed, char person[PERSON],
+                      const char **why)
+{
+	const char *mark = http_header(request, "X-Owsd");
+
+	*why = "expected the header X-Owsd: 1";
+	return mark && strcmp(mark, "1") == 0 &&
+	                       person_may_do(http_descriptor(request),
+	                                     &request->web->face->config->web, deed,
+	                                     http_named(request), person, why)
+	               ? 0
+	               : 403;
+}
+
+unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],
+                    const char **why)
+{
+	if (is_json(http_header(request, "Content-Type")))
+		return guard_person(request, deed, person, why);
+	*why = "expected Content-Type: application/json";
+	return 415;
 }

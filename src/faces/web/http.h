@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "src/faces/web/jobs.h"
+#include "src/faces/web/person.h"
 #include "src/faces/web/web.h"
 
 struct MHD_Connection;
@@ -68,3 +69,14 @@ struct jobs *http_worker(struct web *web, struct jobs **worker);
 int http_defer(struct request *request, struct jobs *jobs, struct job *job);
 /* Answer those whose jobs are done. */
 void http_done(struct jobs *jobs);
+
+/*
+ * May this request do what it asks? By headers that only the page sends, and the person. Returns 0,
+ * with who it is in person; or the status of the refusal, with the reason in *why. Looks at the head
+ * alone, and reads /etc/passwd and /etc/group.
+ */
+unsigned guard_person(const struct request *request, enum person_deed deed, char person[PERSON],
+                      const char **why);
+/* The same of a POST, whose body is JSON. */
+unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],
+                    const char **why);

@@ -11,7 +11,6 @@
 #include "src/faces/kit/body.h"
 #include "src/faces/show/json.h"
 #include "src/faces/web/draft.h"
-#include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/paths.h"
 #include "src/faces/web/writer.h"
@@ -174,12 +173,13 @@ static void save_run(struct job *job)
 static int save_give(struct request *request, bool restore)
 {
 	struct web *web = request->web;
-	char person[PERSON], words[GUARD_WORDS];
-	unsigned status = guard_post(request, PERSON_CONFIGURE, person, words);
+	const char *why;
+	char person[PERSON];
+	unsigned status = guard_post(request, PERSON_CONFIGURE, person, &why);
 	struct save *save;
 
 	if (status)
-		return http_error(request, status, "%s", words);
+		return http_error(request, status, "%s", why);
 	if (request->posted.dropped)
 		return http_error(request, 503, DRAFT_BUSY);
 	save = (struct save *)http_job(request, sizeof(*save), save_run);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "hal/base/time.h"
 #include "src/faces/show/health.h"
@@ -14,7 +15,6 @@
 #include "src/faces/show/reading.h"
 #include "src/faces/show/standing.h"
 #include "src/faces/show/when.h"
-#include "src/faces/web/places.h"
 #include "src/faces/web/show.h"
 #include "src/ground/signal/value.h"
 
@@ -185,4 +185,39 @@ int64_t show_wall_ms(int64_t boot_ns)
 	struct when now = when_now();
 
 	return boot_ns ? (now.wall - (now.boot - boot_ns)) / NS_PER_MS : 0;
+}
+
+/* --- The addresses of Modbus ----------------------------------------------------------------- */
+
+const struct map *places_of(const char *instance)
+{
+	char path[MAP_PATH];
+
+	return map_path_found(instance, path) ? NULL : places_at(path);
+}
+
+const struct map *places_at(const char *path)
+{
+	static struct map map;
+	static struct stat was;
+	static bool right;
+	struct stat is;
+	unsigned line;
+
+	if (stat(path, &is))
+		return NULL;
+	if (is.st_ino == was.st_ino && is.st_mtim.tv_sec == was.st_mtim.tv_sec &&
+	    is.st_mtim.tv_nsec == was.st_mtim.tv_nsec)
+		return right ? &map : NULL;
+	was = is;
+	map_free(&map);
+	right = !map_read(&map, path, &line);
+	return right ? &map : NULL;
+}
+
+int places_register(const struct map *map, const char *identity)
+{
+	unsigned place = map ? map_known(map, identity) : 0;
+
+	return place ? (int)(place * LAYOUT_RECORD) : -1;
 }

@@ -4,10 +4,10 @@
 
 #include <stdbool.h>
 
+#include "src/faces/modbus/map.h"
 #include "src/faces/show/json.h"
 #include "src/public/ows.h"
 
-struct map;
 struct show {
 	struct ows *h;
 	int64_t now_ns;
@@ -33,3 +33,11 @@ const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALAR
 int64_t show_interval(int64_t start_ns, const struct ows_value *v);
 /* The time in milliseconds since 1970 of a boot time; 0 stays 0. */
 int64_t show_wall_ms(int64_t boot_ns);
+
+/* The addresses of Modbus that the page shows beside signals, where there is a map of them. */
+
+/* That of owsd-modbus for the instance as it is now; NULL: there is none, or it is damaged. */
+const struct map *places_of(const char *instance);
+const struct map *places_at(const char *path);
+/* The first register of the signal with that identity; -1: it has none. Pure. */
+int places_register(const struct map *map, const char *identity);

@@ -11,7 +11,6 @@
 #include "src/config/read/rio_file.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/edit.h"
-#include "src/faces/web/guard.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/model.h"
 #include "src/faces/web/paths.h"
@@ -23,7 +22,7 @@ struct stored {
 	struct job job;
 	char file[FILE_MAX], instance[128];
 	bool configurable;
-	char why[GUARD_WORDS];
+	const char *why; /* it is not configurable */
 };
 
 /* The person may; may the text be edited? Only what JSON carries unchanged can be saved again. */
@@ -32,7 +31,7 @@ static void judge(struct stored *stored, const char *text, size_t len)
 	if (!stored->configurable || draft_is_text(text, len))
 		return;
 	stored->configurable = false;
-	snprintf(stored->why, sizeof(stored->why), "%s", DRAFT_NO_TEXT);
+	stored->why = DRAFT_NO_TEXT;
 }
 
 /* The file of before, which the writer keeps beside it. */
@@ -116,16 +115,14 @@ int stored_get(struct request *request)
 	const struct face *face = request->web->face;
 	struct stored *stored = (struct stored *)http_job(request, sizeof(*stored), stored_run);
 	char person[PERSON];
-	const char *why;
 
 	if (!stored)
 		return MHD_NO;
 	snprintf(stored->file, sizeof(stored->file), "%s", face->arguments->file);
 	snprintf(stored->instance, sizeof(stored->instance), "%s", face->arguments->instance);
-	stored->configurable = person_may_do(http_descriptor(request), &face->config->web,
-	                                     PERSON_CONFIGURE,
-	                                     http_header(request, "X-Remote-User"), person, &why);
-	snprintf(stored->why, sizeof(stored->why), "%s", why);
+	stored->configurable = person_may_do(
+		http_descriptor(request), &face->config->web, PERSON_CONFIGURE,
+		http_header(request, "X-Remote-User"), person, &stored->why);
 	return http_defer(request, http_worker(request->web, &request->web->drafts), &stored->job);
 }
 

@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "src/faces/web/shared.h"
+#include "src/faces/web/pace.h"
 
 #define STREAMS 1000
 

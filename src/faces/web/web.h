@@ -13,7 +13,6 @@
 #include "src/faces/web/files.h"
 #include "src/faces/web/pace.h"
 #include "src/faces/web/recent.h"
-#include "src/faces/web/shared.h"
 
 #define WEB_ALARMS 64 /* the last ones, for streams that are behind */
 

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/faces/web/places.h"
+#include "src/faces/web/show.h"
 #include "tests/unit/aid/folder.h"
 
 static char path[300], fresh[310];

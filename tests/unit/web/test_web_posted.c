@@ -7,7 +7,7 @@
 
 #include "hal/base/time.h"
 #include "src/faces/web/head.h"
-#include "src/faces/web/posted.h"
+#include "src/faces/web/jobs.h"
 
 #define LARGE (BODY_MAX + 1)
 

@@ -6,7 +6,7 @@
 #include "unity.h"
 
 #include "hal/base/time.h"
-#include "src/faces/web/shared.h"
+#include "src/faces/web/pace.h"
 
 #define NOW_NS (1000 * NS_PER_S)
 
