@@ -6,8 +6,8 @@
 
 #include "hal/base/time.h"
 #include "src/faces/kit/command.h"
+#include "src/faces/show/digits.h"
 #include "src/faces/show/names.h"
-#include "src/faces/show/range.h"
 #include "src/ground/service/command_age.h"
 #include "src/ground/signal/attribute.h"
 #include "src/ground/signal/error.h"

@@ -12,7 +12,6 @@
 
 #include "src/history/file/record.h"
 #include "src/history/file/sql.h"
-#include "src/history/file/tables.h"
 #include "src/history/file/wal_lock.h"
 
 #define BUSY_MS 200

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdint.h>
 
 int sql_errno(sqlite3 *db, int rc)
 {
@@ -128,4 +129,19 @@ int sql_ask(sqlite3 *db, const char *text, int64_t *value)
 	err = sql_number(statement, value, "");
 	sqlite3_finalize(statement);
 	return err;
+}
+
+/* --- Tables ---------------------------------------------------------------------------------- */
+
+int tables_check(sqlite3 *db)
+{
+	/* a virtual table has no page, and a column that is computed is one "as" something */
+	static const char text[] =
+		"select count(*) from sqlite_master where type = 'table' and rootpage > 0 and name in"
+		" ('session', 'signal', 'raw', 'gap', 'event', 'minute', 'hour')"
+		" and lower(sql) not glob '*[^a-z]as[^a-z]*'";
+	int64_t count = 0;
+	int err = sql_ask(db, text, &count);
+
+	return err < 0 ? err : count == 7 ? 0 : -EBADMSG;
 }

@@ -26,3 +26,9 @@ int sql_run(sqlite3_stmt *statement, const char *types, ...);
 int sql_number(sqlite3_stmt *statement, int64_t *value, const char *types, ...);
 /* The same of a text; prepared for this once. */
 int sql_ask(sqlite3 *db, const char *text, int64_t *value);
+
+/*
+ * Are the tables of the file tables, which hold what is read? A view, or a column that is computed,
+ * in its place could take for ever. 0; -EBADMSG: something else.
+ */
+int tables_check(sqlite3 *db);

@@ -6,8 +6,7 @@
 #include "src/ground/signal/value.h"
 #include "src/history/file/record.h"
 #include "src/history/file/sql.h"
-#include "src/history/library/open.h"
-#include "src/history/library/steps.h"
+#include "src/history/library/handle.h"
 
 /* Columns of H_EVENTS */
 enum {

@@ -10,8 +10,8 @@
 #include "src/faces/kit/look.h"
 #include "src/faces/kit/loop.h"
 #include "src/history/file/place.h"
-#include "src/history/recorder/entries.h"
 #include "src/history/recorder/recording.h"
+#include "src/history/recorder/series.h"
 
 /* Of changes of a signal that come closer together the newest is kept */
 #define PACE_NS (20 * NS_PER_MS)

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "src/config/read/config.h"
+#include "src/history/file/record.h"
 #include "src/history/file/writer.h"
 #include "src/history/recorder/rule.h"
 #include "src/public/ows.h"
@@ -63,3 +64,7 @@ void series_forget(struct series *rows, int64_t now_ns);
 int64_t series_time(const struct series *rows, const struct ows_value *v, int64_t now_ns);
 /* A value as the history has it: bits of a double, or an integer. Pure. */
 int64_t series_bits(uint8_t type, double number, int64_t integer);
+
+/* Entries of the two journals of owsd, of alarms and of commands, as events of history. Pure. */
+struct history_event entries_alarm(const struct ows_alarm *alarm);
+struct history_event entries_command(const struct ows_commanded *command);

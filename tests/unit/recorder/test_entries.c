@@ -5,7 +5,6 @@
 #include "unity.h"
 
 #include "src/ground/signal/value.h"
-#include "src/history/recorder/entries.h"
 #include "src/history/recorder/series.h"
 
 void setUp(void)

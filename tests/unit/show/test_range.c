@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/faces/show/range.h"
+#include "src/faces/show/digits.h"
 
 void setUp(void)
 {
