@@ -4,8 +4,18 @@
 
 #include "src/ground/signal/error.h"
 #include "src/tool/owsctl/ctl.h"
-#include "src/tool/owsctl/served.h"
 #include "src/tool/scan/target.h"
+
+/*
+ * The owserver protocol as an instance of owsd serves it: its address, and the targets it serves.
+ */
+struct served {
+	bool runs;          /* an owsd of that name exists and is alive */
+	char target[160];   /* the target that reaches the protocol; "": owsd does not serve it */
+	bool own;           /* that is NAME.sock, which takes no writes */
+	char targets[1024]; /* the targets of owsd, as in TargetName */
+	bool cut;           /* targets is cut */
+};
 
 #define OPEN_DEFAULT_TARGET "localhost:4304"
 #define OPEN_TIMEOUT_NS (20 * NS_PER_S)

@@ -2,7 +2,6 @@
 /* Reads devices by several connections to the same target. */
 #include <pthread.h>
 
-#include "src/tool/scan/parallel.h"
 #include "src/tool/scan/scan.h"
 #include "src/tool/scan/target.h"
 

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/tool/owsctl/instance_state.h"
+#include "src/tool/owsctl/running.h"
 
 void setUp(void)
 {

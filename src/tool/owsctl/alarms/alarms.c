@@ -12,7 +12,6 @@
 #include "src/faces/show/when.h"
 #include "src/public/ows.h"
 #include "src/tool/owsctl/alarms/alarms_live.h"
-#include "src/tool/owsctl/alarms/journal.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/verbs.h"
 

@@ -13,3 +13,7 @@ extern const struct alarms_word {
 /* Does each pattern match a signal? If not, prints the error on stderr. */
 bool alarms_known(struct ows *h, char *const *patterns, int count);
 int alarms_live(struct ctl *ctl, int argc, char **argv);
+
+/* owsctl alarms history: the journal of owsd's memory, without commands. */
+
+int journal_alarms(struct ctl *ctl, int argc, char **argv);

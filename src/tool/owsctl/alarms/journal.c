@@ -14,7 +14,6 @@
 #include "src/faces/show/journal_past.h"
 #include "src/faces/show/names.h"
 #include "src/tool/owsctl/alarms/alarms_live.h"
-#include "src/tool/owsctl/alarms/journal.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/past.h"
 #include "src/tool/owsctl/table.h"
