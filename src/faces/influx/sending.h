@@ -2,6 +2,8 @@
 /*
  * Batches on their way: copied from memory, sent, taken, refused; and what the server has missed,
  * from the history. face->own is a pushing.
+ *
+ * Room src/faces/influx: the program owsd-influx: pushes signals to a server.
  */
 #pragma once
 
