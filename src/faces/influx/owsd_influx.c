@@ -19,13 +19,6 @@
 #define TICK_NS NS_PER_S
 #define END_NS (5 * NS_PER_S)
 
-static void pushing_watch(void *ctx, int fd, short events)
-{
-	face_ignore(ctx, fd);
-	if (events && face_watch(ctx, fd, events))
-		log_err(((struct face *)ctx)->log, "too many descriptors");
-}
-
 /* missed.info */
 static bool info_of(void *ctx, int row, struct ows_info *info)
 {
@@ -129,7 +122,7 @@ static int pushing_open(struct face *face)
 	struct pushing *p = face->own = &pushing;
 	int64_t now_ns = ows_now();
 
-	p->post = post_open(pushing_watch, face);
+	p->post = post_open(face_watch_anew, face);
 	if (!p->post) {
 		face_complain(face->ops->program, "libcurl cannot be used: no memory");
 		return -ENOMEM;

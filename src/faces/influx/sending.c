@@ -89,13 +89,6 @@ static const char *advice_on_status(long status)
 	                           : "correct Url";
 }
 
-/* A proxy whose server is away answers with 502 or 504. */
-static enum backoff_why why_of(const struct post_result *result)
-{
-	return result->status && result->status != 502 && result->status != 504 ? BACKOFF_REFUSED
-	                                                                        : BACKOFF_AWAY;
-}
-
 /* Once when it is lost, once more when the reason is of another kind. */
 static void sending_fail(struct face *face, const struct post_result *result, int64_t now_ns)
 {
@@ -112,7 +105,8 @@ static void sending_fail(struct face *face, const struct post_result *result, in
 		log_warning(face->log, "%.100s is lost: %s; values wait", p->options.url,
 		            result->words);
 	p->trouble = trouble;
-	p->next_ns = now_ns + backoff_pause(&p->backoff, why_of(result), backoff_random());
+	p->next_ns = now_ns +
+	             backoff_pause(&p->backoff, post_why(result->status), backoff_random());
 	p->cut_ns = now_ns;
 }
 

@@ -101,6 +101,13 @@ void face_ignore(struct face *face, int fd)
 		}
 }
 
+void face_watch_anew(void *face, int fd, short events)
+{
+	face_ignore(face, fd);
+	if (events && face_watch(face, fd, events))
+		log_err(((struct face *)face)->log, "too many descriptors");
+}
+
 int64_t face_came(const struct face *face, int fd)
 {
 	for (unsigned i = 0; i < face->fd_count; i++)

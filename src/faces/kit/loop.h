@@ -13,6 +13,8 @@ int face_main(const struct face_ops *ops, int argc, char **argv);
 /* Wait for fd too, events as in poll(2). 0 or -ENOSPC. face_ignore() before closing it. */
 int face_watch(struct face *face, int fd, short events);
 void face_ignore(struct face *face, int fd);
+/* Wait for these events in place of those before; 0: no more. As post_open() wants it. */
+void face_watch_anew(void *face, int fd, short events);
 /*
  * When the loop last saw that nothing was to be read at fd: all that is read there now came later.
  * That is a second ago at most, but where the face did not run, or was busy. 0: not yet.

@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "src/faces/kit/backoff.h"
+
 #define POST_WORDS 160
 #define POST_HEADER 1100
 
@@ -18,6 +20,12 @@ struct post_result {
 	/* "HTTP 400: the first words of the answer", or why there was none; printable */
 	char words[POST_WORDS + 16];
 };
+
+/* What kind of failure is that? A proxy whose server is away answers with 502 or 504. */
+static inline enum backoff_why post_why(long status)
+{
+	return status && status != 502 && status != 504 ? BACKOFF_REFUSED : BACKOFF_AWAY;
+}
 
 /* watch: wait for fd too, events as in poll(2); 0: no more. NULL: no memory. */
 struct post *post_open(void (*watch)(void *ctx, int fd, short events), void *ctx);

@@ -3,7 +3,6 @@
 #include "src/faces/modbus/modbus.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -243,7 +242,6 @@ static void make_places(struct modbus *m)
 static int lock_map(struct modbus *m)
 {
 	char directory[sizeof(m->path)];
-	int fd, lock;
 
 	m->lock = -1;
 	if (map_path(m->face->arguments->instance, m->path))
@@ -252,13 +250,8 @@ static int lock_map(struct modbus *m)
 		return 0;
 	memcpy(directory, m->path, sizeof(directory));
 	*strrchr(directory, '/') = '\0';
-	fd = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (fd < 0)
-		return 0;
-	lock = history_lock(fd);
-	close(fd);
-	m->lock = lock;
-	return lock == -EBUSY ? lock : 0;
+	m->lock = history_lock(directory);
+	return m->lock == -EBUSY ? m->lock : 0;
 }
 
 /* --- Of the face ----------------------------------------------------------------------------- */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What survives an end of owsd-notify. */
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -10,17 +9,6 @@
 
 #include "hal/base/time.h"
 #include "src/faces/notify/kept.h"
-
-/* The lock's descriptor or a negative errno. */
-static int lock_directory(const char *path)
-{
-	int directory = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	int lock = directory < 0 ? -errno : history_lock(directory);
-
-	if (directory >= 0)
-		close(directory);
-	return lock;
-}
 
 int kept_open(struct kept *kept, const char *program, const char *instance, int64_t now_ns,
               int64_t *told_ns, int64_t *looked_ns)
@@ -34,7 +22,7 @@ int kept_open(struct kept *kept, const char *program, const char *instance, int6
 		return 0;
 	snprintf(kept->path, sizeof(kept->path), "%s/told", directory);
 	history_make_above(kept->path);
-	kept->lock = lock_directory(directory);
+	kept->lock = history_lock(directory);
 	if (kept->lock == -EBUSY)
 		return -EBUSY;
 	in = fopen(kept->path, "re");

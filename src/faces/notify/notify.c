@@ -275,13 +275,6 @@ static void look_at(struct face *face, int signal, int64_t now_ns)
 
 /* --- The table of the face ------------------------------------------------------------------- */
 
-static void notify_watch(void *ctx, int fd, short events)
-{
-	face_ignore(ctx, fd);
-	if (events && face_watch(ctx, fd, events))
-		log_err(((struct face *)ctx)->log, "too many descriptors");
-}
-
 static void test_watch(void *ctx, int fd, short events)
 {
 	(void)ctx, (void)fd, (void)events;
@@ -344,7 +337,7 @@ int notify_start(struct face *face)
 {
 	int64_t now_ns = ows_now();
 
-	ways_open(&notify.ways, face->log, face->arguments->instance, notify_watch, face);
+	ways_open(&notify.ways, face->log, face->arguments->instance, face_watch_anew, face);
 	notify.ways.judge = judge;
 	notify.ways.judge_ctx = face;
 	if (!notify.ways.post) {

@@ -125,9 +125,7 @@ static void post_over(struct ways *ways, const struct post_result *result, int64
 	if (status >= 200 && status < 300)
 		told(ways, way, now_ns);
 	else
-		not_told(ways, way,
-		         status && status != 502 && status != 504 ? BACKOFF_REFUSED : BACKOFF_AWAY,
-		         result->words, now_ns);
+		not_told(ways, way, post_why(status), result->words, now_ns);
 }
 
 static void run_over(struct ways *ways, struct way *way, int64_t now_ns)

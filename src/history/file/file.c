@@ -24,15 +24,9 @@ static int make_path(const struct history_file *file, const char *name, char pat
 
 static int lock_directory(struct history_file *file)
 {
-	int directory;
-
 	if (mkdir(file->directory, 0750) < 0 && errno != EEXIST && errno != EROFS)
 		return -errno;
-	directory = open(file->directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (directory < 0)
-		return -errno;
-	file->lock = history_lock(directory);
-	close(directory);
+	file->lock = history_lock(file->directory);
 	return file->lock < 0 ? file->lock : 0;
 }
 

@@ -94,15 +94,18 @@ int history_make_above(const char *path)
 	return 0;
 }
 
-int history_lock(int directory)
+int history_lock(const char *directory)
 {
-	int fd = openat(directory, LOCK, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
-	                0600);
+	int at = open(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC), fd, err = 0;
 	struct stat seen;
-	int err = 0;
 
-	if (fd < 0)
+	if (at < 0)
 		return -errno;
+	fd = openat(at, LOCK, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
+	err = fd < 0 ? -errno : 0;
+	close(at);
+	if (err)
+		return err;
 	/* who may read a file or a directory may lock it: it would lock us out */
 	if (fstat(fd, &seen) < 0 || (seen.st_mode & 077 && fchmod(fd, 0600) < 0) ||
 	    flock(fd, LOCK_EX | LOCK_NB) < 0)

@@ -30,7 +30,7 @@ int history_make_above(const char *path);
  * Lock a directory by a file in it that nobody else may open: another program that locks it there
  * too gets -EBUSY. Returns the lock's descriptor, whose closing frees it, or a negative errno.
  */
-int history_lock(int directory);
+int history_lock(const char *directory);
 
 /* The boot that this machine is in. */
 
