@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "hal/base/time.h"
+#include "src/faces/kit/arguments.h"
 #include "src/faces/notify/message.h"
 #include "src/faces/notify/rules.h"
 #include "src/faces/notify/ways.h"
@@ -299,18 +300,6 @@ void ways_step(struct ways *ways, const struct config_notify *notify, int fd, sh
 	}
 }
 
-void ways_wait(struct ways *ways, const struct config_notify *notify)
-{
-	struct post_result result;
-	int64_t now_ns = ows_now();
-
-	ways_step(ways, notify, -1, 0, now_ns);
-	if (!ways->post || !post_is_busy(ways->post))
-		nanosleep(&(struct timespec){.tv_nsec = RUNS_NS}, NULL);
-	else if (post_wait(ways->post, now_ns + RUNS_NS, &result))
-		post_over(ways, &result, ows_now());
-}
-
 void ways_again(struct ways *ways)
 {
 	for (int i = 0; i < WAYS; i++) {
@@ -339,4 +328,58 @@ void ways_close(struct ways *ways)
 	}
 	post_close(ways->post);
 	ways->post = NULL;
+}
+
+/* --- The test -------------------------------------------------------------------------------- */
+
+static void test_watch(void *ctx, int fd, short events)
+{
+	(void)ctx, (void)fd, (void)events;
+}
+
+/* Wait a moment for what is under way, and step: there is no loop of a face. */
+static void ways_wait(struct ways *ways, const struct config_notify *notify)
+{
+	struct post_result result;
+	int64_t now_ns = ows_now();
+
+	ways_step(ways, notify, -1, 0, now_ns);
+	if (!ways->post || !post_is_busy(ways->post))
+		nanosleep(&(struct timespec){.tv_nsec = RUNS_NS}, NULL);
+	else if (post_wait(ways->post, now_ns + RUNS_NS, &result))
+		post_over(ways, &result, ows_now());
+}
+
+/* Each way by itself, with what it says. */
+int ways_test(struct ways *ways, const struct config_notify *given, const char *program,
+              const char *instance)
+{
+	struct config_notify file = *given;
+	struct entry entry = {.critical = true, .signal = -1};
+	int failed = 0;
+
+	ways_open(ways, NULL, instance, test_watch, NULL);
+	file.gather_ns = 0;
+	file.quiet = NULL;
+	for (int second = 0; second < 2; second++) {
+		entry.escalated = second;
+		message_line(&entry, "%s", "test; owsd-notify --test has sent this");
+		*ways_add(ways) = entry;
+	}
+	for (int i = 0; i < WAYS; i++) {
+		struct way *way = &ways->way[i];
+
+		if (!ways_has(&file, (enum way_kind)i))
+			continue;
+		do {
+			ways_wait(ways, &file);
+		} while (!way->told && !way->failed);
+		failed += !way->told;
+		if (way->told)
+			printf("%s: told\n", ways_name((enum way_kind)i));
+		else
+			face_complain(program, "%s: %s", ways_name((enum way_kind)i), way->why);
+	}
+	ways_close(ways);
+	return failed ? -EIO : 0;
 }

@@ -2,6 +2,8 @@
 /*
  * The ways to people. Each goes through the queue by itself: what it has not told waits for it, and
  * what comes meanwhile is in the same message as soon as the way works again.
+ *
+ * Room src/faces/notify: the program owsd-notify: tells people of alarms.
  */
 #pragma once
 
@@ -63,11 +65,15 @@ bool ways_tells(enum way_kind kind, bool escalated);
 /* Look at what is under way, and begin what is due. fd: ready for the POST; -1: none. */
 void ways_step(struct ways *ways, const struct config_notify *notify, int fd, short ready,
                int64_t now_ns);
-/* Wait a moment for what is under way, and step: of a program without the loop of the face. */
-void ways_wait(struct ways *ways, const struct config_notify *notify);
 /* Try all at once again: the file is another. */
 void ways_again(struct ways *ways);
 /* When to look again. */
 int64_t ways_next(const struct ways *ways, int64_t now_ns);
 /* What is under way is given up. */
 void ways_close(struct ways *ways);
+/*
+ * Tell a test message each way, print what became of it, and close. Waits as long as a way may
+ * take. 0, or -EIO: not all of them have told it.
+ */
+int ways_test(struct ways *ways, const struct config_notify *given, const char *program,
+              const char *instance);
