@@ -10,8 +10,8 @@
 
 #include "src/faces/kit/look.h"
 #include "src/faces/kit/loop.h"
-#include "src/faces/show/health.h"
 #include "src/faces/show/newest.h"
+#include "src/faces/show/stats.h"
 
 #define HEART_NS (100 * NS_PER_MS)
 /* Clients read the image themselves: of changes only the time of the newest is of use */

@@ -7,7 +7,7 @@
 #include "hal/base/time.h"
 #include "src/faces/mqtt/entity.h"
 #include "src/faces/mqtt/plain.h"
-#include "src/faces/show/health.h"
+#include "src/faces/show/stats.h"
 #include "src/ground/signal/unit.h"
 #include "src/ground/signal/value.h"
 

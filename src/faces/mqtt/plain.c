@@ -5,8 +5,8 @@
 
 #include "hal/base/time.h"
 #include "src/faces/mqtt/plain.h"
-#include "src/faces/show/health.h"
 #include "src/faces/show/reading.h"
+#include "src/faces/show/stats.h"
 #include "src/faces/show/when.h"
 
 void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE])

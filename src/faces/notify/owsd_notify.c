@@ -15,12 +15,12 @@
 #include "src/faces/kit/secret.h"
 #include "src/faces/notify/kept.h"
 #include "src/faces/notify/message.h"
+#include "src/faces/notify/queue.h"
 #include "src/faces/notify/rows.h"
-#include "src/faces/notify/rules.h"
 #include "src/faces/notify/ways.h"
 #include "src/faces/show/digits.h"
 #include "src/faces/show/newest.h"
-#include "src/faces/show/standing.h"
+#include "src/faces/show/present.h"
 
 #define AFTER_NS (2 * NS_PER_S) /* the value after a device's alarm */
 

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/faces/notify/queue.h"
 #include "src/faces/notify/rows.h"
-#include "src/faces/notify/rules.h"
 #include "src/ground/signal/hash.h"
 
 static int by_print(const void *a, const void *b)

@@ -9,7 +9,7 @@
 #include "hal/base/time.h"
 #include "src/faces/kit/arguments.h"
 #include "src/faces/notify/message.h"
-#include "src/faces/notify/rules.h"
+#include "src/faces/notify/queue.h"
 #include "src/faces/notify/ways.h"
 #include "src/public/ows.h"
 

@@ -7,7 +7,7 @@
 #include "src/faces/show/metrics.h"
 #include "src/faces/show/names.h"
 #include "src/faces/show/newest.h"
-#include "src/faces/show/standing.h"
+#include "src/faces/show/present.h"
 #include "src/faces/show/stats.h"
 #include "src/faces/show/when.h"
 #include "src/ground/signal/utf8.h"

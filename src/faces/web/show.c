@@ -10,10 +10,10 @@
 #include <sys/stat.h>
 
 #include "hal/base/time.h"
-#include "src/faces/show/health.h"
 #include "src/faces/show/newest.h"
+#include "src/faces/show/present.h"
 #include "src/faces/show/reading.h"
-#include "src/faces/show/standing.h"
+#include "src/faces/show/stats.h"
 #include "src/faces/show/when.h"
 #include "src/faces/web/show.h"
 #include "src/ground/signal/value.h"

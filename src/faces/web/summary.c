@@ -7,7 +7,7 @@
 
 #include "hal/base/time.h"
 #include "src/faces/kit/body.h"
-#include "src/faces/show/standing.h"
+#include "src/faces/show/present.h"
 #include "src/faces/web/summary.h"
 #include "src/ground/signal/utf8.h"
 

@@ -13,7 +13,7 @@
  */
 #pragma once
 
-#include "src/history/file/rollup.h"
+#include "src/history/file/rolling.h"
 
 #define MINUTES 60
 #define MINUTES_TEXT (MINUTES * 192)

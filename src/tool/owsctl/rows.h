@@ -5,8 +5,8 @@
 #include <stdbool.h>
 
 #include "src/faces/show/json.h"
+#include "src/faces/show/present.h"
 #include "src/faces/show/reading.h"
-#include "src/faces/show/standing.h"
 #include "src/ground/signal/value.h"
 #include "src/public/ows.h"
 #include "src/tool/owsctl/table.h"

@@ -2,7 +2,7 @@
 /* Tests of the rules of owsd-notify: severity, choice of signals, quiet hours. */
 #include "unity.h"
 
-#include "src/faces/notify/rules.h"
+#include "src/faces/notify/queue.h"
 
 void setUp(void)
 {

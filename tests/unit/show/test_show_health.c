@@ -2,7 +2,7 @@
 /* Tests of the health of devices: what qualities, simulation and failed requests say of them. */
 #include "unity.h"
 
-#include "src/faces/show/health.h"
+#include "src/faces/show/stats.h"
 #include "tests/unit/aid/instance.h"
 
 #define S INSTANCE_S

@@ -4,7 +4,7 @@
 
 #include "unity.h"
 
-#include "src/faces/show/standing.h"
+#include "src/faces/show/present.h"
 #include "src/tool/owsctl/rows.h"
 
 void setUp(void)
