@@ -96,16 +96,6 @@ static void store_forget(struct stored *stored)
 	stored->text = NULL;
 }
 
-static int name_backup(const char *file, char path[PATH_MAX], struct answer *answer)
-{
-	int n = snprintf(path, PATH_MAX, "%s.before", file);
-
-	if (n < PATH_MAX)
-		return 0;
-	answer_say(answer, ANSWER_ERROR, "the name of the configuration is too long");
-	return -ENAMETOOLONG;
-}
-
 static void show_tag(struct answer *answer, const char *tag)
 {
 	answer->has_tag = true;
@@ -122,14 +112,23 @@ static void show_backup(const char *backup, const char *tag, struct answer *answ
 	answer->backup_ms = (int64_t)st.st_mtim.tv_sec * 1000 + st.st_mtim.tv_nsec / 1000000;
 }
 
-static bool is_base(const struct stored *present, const struct order *order, struct answer *answer)
+/* The file while it is locked. */
+struct change {
+	const char *file;
+	char backup[PATH_MAX];
+	struct stored present;
+	struct answer *answer;
+};
+
+static bool is_base(const struct change *c, const struct order *order)
 {
-	show_tag(answer, present->tag);
-	if (strcmp(present->tag, order->base) == 0)
+	show_tag(c->answer, c->present.tag);
+	/* who renames names what is there now */
+	if (order->kind == ORDER_RENAME || strcmp(c->present.tag, order->base) == 0)
 		return true;
-	answer_say(answer, ANSWER_CONFLICT,
-	           *present->tag ? "the file was changed meanwhile: look at it again"
-	                         : "the file is not there any more");
+	answer_say(c->answer, ANSWER_CONFLICT,
+	           *c->present.tag ? "the file was changed meanwhile: look at it again"
+	                           : "the file is not there any more");
 	return false;
 }
 
@@ -159,71 +158,116 @@ static int remove_link(const char *path)
  * is killed then leaves: backup first keeps two copies of the present text, file first two of the
  * text of before.
  */
-static int write_both(const char *file, const char *backup, bool backup_first,
-                      const struct stored *present, const char *text, size_t len,
-                      struct answer *answer)
+static int write_both(const struct change *c, bool backup_first, const char *text, size_t len)
 {
+	const struct stored *present = &c->present;
 	struct replacement new, old;
-	int err = replace_prepare(&new, file, present->text ? &present->st : NULL, text, len);
+	int err = replace_prepare(&new, c->file, present->text ? &present->st : NULL, text, len);
 
 	if (err) {
-		say_failed(file, err, answer);
+		say_failed(c->file, err, c->answer);
 		return err;
 	}
-	err = present->text ? remove_link(backup) : 0;
+	err = present->text ? remove_link(c->backup) : 0;
 	if (!err && present->text)
-		err = replace_prepare(&old, backup, &present->st, present->text, present->len);
+		err = replace_prepare(&old, c->backup, &present->st, present->text, present->len);
 	if (!err && present->text && backup_first) {
 		err = replace_commit(&old);
 		if (!err)
-			show_backup(backup, present->tag, answer);
+			show_backup(c->backup, present->tag, c->answer);
 	}
 	if (err) {
 		replace_abandon(&new);
-		say_failed(backup, err, answer);
+		say_failed(c->backup, err, c->answer);
 		return err;
 	}
 	err = replace_commit(&new);
 	if (err)
-		say_failed(file, err, answer);
+		say_failed(c->file, err, c->answer);
 	if (present->text && !backup_first && err)
 		replace_abandon(&old);
 	else if (present->text && !backup_first && replace_commit(&old) == 0)
-		show_backup(backup, present->tag, answer);
+		show_backup(c->backup, present->tag, c->answer);
 	return err;
 }
 
 /* Nothing is to be written: the file of before stays what it is. */
-static void leave_in_place(const char *backup, const struct stored *present, struct answer *answer)
+static void leave_in_place(const struct change *c)
 {
 	struct stored before;
 
-	if (store_load(backup, &before, answer) == 0 && before.text)
-		show_backup(backup, before.tag, answer);
+	if (store_load(c->backup, &before, c->answer) == 0 && before.text)
+		show_backup(c->backup, before.tag, c->answer);
 	store_forget(&before);
-	show_tag(answer, present->tag);
+	show_tag(c->answer, c->present.tag);
 }
 
-static void exchange_texts(const char *file, const char *backup, bool backup_first,
-                           const struct stored *present, const char *text, size_t len,
-                           struct answer *answer)
+static void exchange_texts(const struct change *c, bool backup_first, const char *text, size_t len)
 {
 	char tag[TAG_TEXT];
 
-	if (check_text(file, text, len, answer)) {
-		answer_say(answer, ANSWER_INVALID, "the text has errors");
+	if (check_text(c->file, text, len, c->answer)) {
+		answer_say(c->answer, ANSWER_INVALID, "the text has errors");
 		return;
 	}
-	if (present->text && present->len == len && memcmp(present->text, text, len) == 0) {
-		leave_in_place(backup, present, answer);
+	if (c->present.text && c->present.len == len && memcmp(c->present.text, text, len) == 0) {
+		leave_in_place(c);
 	} else {
-		if (write_both(file, backup, backup_first, present, text, len, answer))
+		if (write_both(c, backup_first, text, len))
 			return;
 		tag_print(text, len, tag);
-		show_tag(answer, tag);
+		show_tag(c->answer, tag);
 	}
-	answer->status = ANSWER_DONE;
-	*answer->why = '\0';
+	c->answer->status = ANSWER_DONE;
+	*c->answer->why = '\0';
+}
+
+static void put_back(const struct change *c)
+{
+	struct stored before;
+	int err = store_load(c->backup, &before, c->answer);
+
+	if (!err && before.text)
+		exchange_texts(c, false, before.text, before.len);
+	else if (!err)
+		answer_say(c->answer, ANSWER_REFUSED, "there is no %s: nothing was saved before",
+		           c->backup);
+	store_forget(&before);
+}
+
+/* What is wrong with a name is the reason; a warning is one of the text that follows. */
+static void take_fault(void *ctx, bool is_error, int line, int column, const char *text)
+{
+	if (is_error)
+		answer_say(ctx, ANSWER_REFUSED, "%s", text);
+	else
+		answer_problem(ctx, is_error, line, column, text);
+}
+
+static void rename_in(const struct change *c, const char *names)
+{
+	struct config_report silent = {0}, report = {.problem = take_fault, .ctx = c->answer};
+	const char *to = strchr(names, '\n');
+	char *name = to ? strndup(names, (size_t)(to - names)) : NULL;
+	struct rio *rio = NULL;
+	int err;
+
+	if (!c->present.text || !name) {
+		answer_say(c->answer, ANSWER_REFUSED,
+		           "expected the name of an item, a line end and another name");
+		free(name);
+		return;
+	}
+	err = rio_parse(c->file, c->present.text, c->present.len, &silent, &rio);
+	/* a text with errors is refused with all of them below */
+	if (!err && !silent.errors)
+		err = edit_rename(&rio, name, to + 1, &report);
+	if (!err)
+		exchange_texts(c, true, rio->text, rio->len);
+	else if (!report.errors)
+		answer_say(c->answer, ANSWER_ERROR, "%s", strerror(-err));
+	rio_free(rio);
+	free(name);
 }
 
 static int lock_config(const char *file, struct answer *answer)
@@ -238,91 +282,30 @@ static int lock_config(const char *file, struct answer *answer)
 	return fd;
 }
 
-void store_replace(const char *file, const struct order *order, const char *text,
-                   struct answer *answer)
+void store_change(const char *file, const struct order *order, const char *body,
+                  struct answer *answer)
 {
-	struct stored present = {0};
-	char backup[PATH_MAX];
-	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
+	struct change c = {.file = file, .answer = answer};
+	int fd = -1;
 
-	if (fd < 0)
-		return;
-	if (store_load(file, &present, answer) == 0 && is_base(&present, order, answer))
-		exchange_texts(file, backup, true, &present, text, order->length, answer);
-	store_forget(&present);
-	replace_unlock(file, fd);
-}
-
-void store_restore(const char *file, const struct order *order, struct answer *answer)
-{
-	struct stored present = {0}, before = {0};
-	char backup[PATH_MAX];
-	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
-
-	if (fd < 0)
-		return;
-	if (store_load(file, &present, answer) || !is_base(&present, order, answer) ||
-	    store_load(backup, &before, answer))
-		goto out;
-	if (before.text)
-		exchange_texts(file, backup, false, &present, before.text, before.len, answer);
+	if (snprintf(c.backup, sizeof(c.backup), "%s.before", file) >= (int)sizeof(c.backup))
+		answer_say(answer, ANSWER_ERROR, "the name of the configuration is too long");
 	else
-		answer_say(answer, ANSWER_REFUSED, "there is no %s: nothing was saved before",
-		           backup);
-out:
-	store_forget(&present);
-	store_forget(&before);
-	replace_unlock(file, fd);
-}
-
-/* What is wrong with a name is the reason; a warning is one of the text that follows. */
-static void take_fault(void *ctx, bool is_error, int line, int column, const char *text)
-{
-	if (is_error)
-		answer_say(ctx, ANSWER_REFUSED, "%s", text);
-	else
-		answer_problem(ctx, is_error, line, column, text);
-}
-
-static void rename_in(const char *file, const char *backup, const struct stored *present,
-                      const char *names, struct answer *answer)
-{
-	struct config_report silent = {0}, report = {.problem = take_fault, .ctx = answer};
-	const char *to = strchr(names, '\n');
-	char *name = to ? strndup(names, (size_t)(to - names)) : NULL;
-	struct rio *rio = NULL;
-	int err;
-
-	if (!present->text || !name) {
-		answer_say(answer, ANSWER_REFUSED,
-		           "expected the name of an item, a line end and another name");
-		free(name);
-		return;
-	}
-	err = rio_parse(file, present->text, present->len, &silent, &rio);
-	/* a text with errors is refused with all of them below */
-	if (!err && !silent.errors)
-		err = edit_rename(&rio, name, to + 1, &report);
-	if (!err)
-		exchange_texts(file, backup, true, present, rio->text, rio->len, answer);
-	else if (!report.errors)
-		answer_say(answer, ANSWER_ERROR, "%s", strerror(-err));
-	rio_free(rio);
-	free(name);
-}
-
-void store_rename(const char *file, const char *names, struct answer *answer)
-{
-	struct stored present = {0};
-	char backup[PATH_MAX];
-	int fd = name_backup(file, backup, answer) ? -1 : lock_config(file, answer);
-
+		fd = lock_config(file, answer);
 	if (fd < 0)
 		return;
-	if (store_load(file, &present, answer) == 0) {
-		show_tag(answer, present.tag);
-		rename_in(file, backup, &present, names, answer);
-	}
-	store_forget(&present);
+	if (store_load(file, &c.present, answer) == 0 && is_base(&c, order))
+		switch (order->kind) {
+		case ORDER_REPLACE:
+			exchange_texts(&c, true, body, order->length);
+			break;
+		case ORDER_RESTORE:
+			put_back(&c);
+			break;
+		case ORDER_RENAME:
+			rename_in(&c, body);
+			break;
+		}
+	store_forget(&c.present);
 	replace_unlock(file, fd);
 }

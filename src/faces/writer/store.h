@@ -13,12 +13,10 @@
 /* Check the items of a text against what is known of their chips: the warnings go to answer. */
 void store_check_items(const char *text, size_t len, struct answer *answer);
 /*
- * Put text in place of the file if that is still the one of the request's base. If the file has
- * this text already, both files stay as they are, and the answer is that of a replace.
+ * What the order asks for, if the file is still the one of its base. The body: a text for the place
+ * of the file (if the file has this text already, both files stay as they are, and the answer is that
+ * of a replace); of a rename the name that an item has, a line end, its other name. To restore puts
+ * the file of before in place; the present one is then the file of before.
  */
-void store_replace(const char *file, const struct order *order, const char *text,
-                   struct answer *answer);
-/* Put the file of before in place likewise; the present one is then the file of before. */
-void store_restore(const char *file, const struct order *order, struct answer *answer);
-/* Give an item of the file another name; names: that of now, a line end, the other. */
-void store_rename(const char *file, const char *names, struct answer *answer);
+void store_change(const char *file, const struct order *order, const char *body,
+                  struct answer *answer);

@@ -160,24 +160,6 @@ static void ask_reload(const struct writer *writer, struct answer *answer)
 		answer_say(answer, ANSWER_DONE, "owsd did not reload: %s", strerror(-err));
 }
 
-static void carry_out(const struct writer *writer, const struct order *order, const char *body,
-                      struct answer *answer)
-{
-	switch (order->kind) {
-	case ORDER_REPLACE:
-		store_replace(writer->file, order, body, answer);
-		break;
-	case ORDER_RESTORE:
-		store_restore(writer->file, order, answer);
-		break;
-	case ORDER_RENAME:
-		store_rename(writer->file, body, answer);
-		break;
-	}
-	if (answer->status == ANSWER_DONE)
-		ask_reload(writer, answer);
-}
-
 /* kind: "request", where it was not understood. */
 static void log_visit(const struct writer *writer, const struct peer *peer, const char *kind,
                       const struct order *order, const struct answer *answer)
@@ -224,7 +206,9 @@ void visit(const struct writer *writer, int fd, bool may)
 		body = receive_request(fd, &order, &answer);
 	if (body) {
 		hold_signals(true);
-		carry_out(writer, &order, body, &answer);
+		store_change(writer->file, &order, body, &answer);
+		if (answer.status == ANSWER_DONE)
+			ask_reload(writer, &answer);
 	}
 	log_visit(writer, &peer,
 	          !body                         ? "request"
