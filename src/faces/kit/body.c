@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "src/faces/kit/body.h"
+#include "src/faces/show/json.h"
 #include "src/ground/signal/utf8.h"
 
 struct text {
@@ -151,38 +152,14 @@ static int parse_string(struct text *t, const char **text)
 	return 0;
 }
 
-static bool digits(struct text *t)
-{
-	const char *first = t->at;
-
-	while (t->at < t->end && isdigit((unsigned char)*t->at))
-		t->at++;
-	return t->at > first;
-}
-
-/* As RFC 8259 has it: no leading 0 or +, digits on both sides of the point. */
 static int parse_number(struct text *t, struct body_member *member)
 {
 	char *first = t->at;
 
-	if (*t->at == '-')
+	while (t->at < t->end && *t->at && strchr("+-.0123456789Ee", *t->at))
 		t->at++;
-	if (t->end - t->at > 1 && t->at[0] == '0' && isdigit((unsigned char)t->at[1]))
+	if (!json_is_number(first, (size_t)(t->at - first)))
 		return -EINVAL;
-	if (!digits(t))
-		return -EINVAL;
-	if (t->at < t->end && *t->at == '.') {
-		t->at++;
-		if (!digits(t))
-			return -EINVAL;
-	}
-	if (t->at < t->end && (*t->at == 'e' || *t->at == 'E')) {
-		t->at++;
-		if (t->at < t->end && (*t->at == '+' || *t->at == '-'))
-			t->at++;
-		if (!digits(t))
-			return -EINVAL;
-	}
 	member->kind = BODY_NUMBER;
 	/* a colon or a blank stands before it, which nobody reads again: that gives room for NUL */
 	memmove(first - 1, first, (size_t)(t->at - first));
@@ -215,7 +192,7 @@ static int parse_value(struct text *t, struct body_member *member)
 		member->text = words[i].word;
 		return 0;
 	}
-	return *t->at == '-' || isdigit((unsigned char)*t->at) ? parse_number(t, member) : -EINVAL;
+	return parse_number(t, member);
 }
 
 static int parse_member(struct text *t, struct body *body)

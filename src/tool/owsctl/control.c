@@ -41,19 +41,13 @@ static char *next_word(char **rest)
 	return word;
 }
 
-static bool parse_uint32(const char *word, unsigned long most, uint32_t *number)
+static bool parse_uint32(const char *word, uint32_t *number)
 {
-	char *end;
-	unsigned long value;
+	int64_t value;
+	bool is = *word >= '0' && *word <= '9' && ctl_count(word, 0, UINT32_MAX, &value);
 
-	if (*word < '0' || *word > '9')
-		return false;
-	errno = 0;
-	value = strtoul(word, &end, 10);
-	if (errno || *end || value > most)
-		return false;
-	*number = (uint32_t)value;
-	return true;
+	*number = is ? (uint32_t)value : 0;
+	return is;
 }
 
 static int control_find(struct control *control, const char *name)
@@ -112,7 +106,7 @@ static int do_beat(struct control *control, char *rest)
 {
 	uint32_t period_ms;
 
-	if (!parse_uint32(next_word(&rest), UINT32_MAX, &period_ms) || !period_ms || *rest) {
+	if (!parse_uint32(next_word(&rest), &period_ms) || !period_ms || *rest) {
 		control->why = "beat takes a number of milliseconds";
 		return -EINVAL;
 	}
@@ -145,7 +139,7 @@ static int do_shelve(struct control *control, char *rest)
 
 	if (id < 0)
 		return id;
-	if (!parse_uint32(next_word(&rest), UINT32_MAX, &seconds)) {
+	if (!parse_uint32(next_word(&rest), &seconds)) {
 		control->why = "shelve takes a name, a number of seconds, and why";
 		return -EINVAL;
 	}
