@@ -21,7 +21,8 @@
 
 struct order {
 	struct job job;
-	char instance[128], person[PERSON];
+	const char *instance;
+	char person[PERSON];
 	int64_t came_ns;
 	int fd; /* of the request */
 	struct body body;
@@ -280,8 +281,7 @@ static int command_give(struct request *request, void (*run)(struct job *job),
 		return MHD_NO;
 	order->came_ns = request->came_ns;
 	order->fd = http_descriptor(request);
-	snprintf(order->instance, sizeof(order->instance), "%s",
-	         request->web->face->arguments->instance);
+	order->instance = request->web->face->arguments->instance;
 	if (!may(request, order, &result)) {
 		job_free(&order->job);
 		return result;

@@ -23,7 +23,7 @@
 
 struct devices {
 	struct job job;
-	char instance[128];
+	const char *instance;
 	int64_t until_ns;
 	unsigned id_count;
 	char id[IDS][ROM_TEXT_MAX];
@@ -115,8 +115,7 @@ int devices_get(struct request *request)
 	devices = (struct devices *)http_job(request, sizeof(*devices), devices_run);
 	if (!devices)
 		return MHD_NO;
-	snprintf(devices->instance, sizeof(devices->instance), "%s",
-	         web->face->arguments->instance);
+	devices->instance = web->face->arguments->instance;
 	devices->until_ns = ows_now() + ALL_NS;
 	if (ids && !parse_ids(ids, devices)) {
 		job_free(&devices->job);

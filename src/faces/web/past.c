@@ -26,7 +26,8 @@
 
 struct past_job {
 	struct job job;
-	char instance[128], directory[DIRECTORY], name[NAME];
+	const char *instance;
+	char directory[DIRECTORY], name[NAME];
 	char identity[2 * NAME]; /* of the signal that has the name now; else the name */
 	int64_t from_ns, until_ns;
 	int n, first;
@@ -70,7 +71,7 @@ static struct past_job *make(struct request *request, void (*run)(struct job *jo
 	if (!past)
 		return NULL;
 	past->job.run = run;
-	snprintf(past->instance, sizeof(past->instance), "%s", face->arguments->instance);
+	past->instance = face->arguments->instance;
 	if (!place(past->instance, face->config, past->directory))
 		past->directory[0] = '\0';
 	return past;

@@ -16,14 +16,13 @@
 #include "src/faces/web/writer.h"
 #include "src/ground/signal/error.h"
 
-#define SAVE_PATH 4096
 #define SAVE_FILES 256 /* the configuration refuses a longer path */
 
 struct save {
 	struct job job;
 	bool restore;
-	char instance[128], person[PERSON];
-	char file[SAVE_PATH];   /* that is saved */
+	const char *instance, *file; /* file: that is saved */
+	char person[PERSON];
 	char files[SAVE_FILES]; /* where the files of the page are; "": the program's own place */
 	struct body body;
 };
@@ -186,9 +185,9 @@ static int save_give(struct request *request, bool restore)
 	if (!save)
 		return MHD_NO;
 	save->restore = restore;
-	snprintf(save->instance, sizeof(save->instance), "%s", web->face->arguments->instance);
+	save->instance = web->face->arguments->instance;
 	memcpy(save->person, person, sizeof(person));
-	snprintf(save->file, sizeof(save->file), "%s", web->face->arguments->file);
+	save->file = web->face->arguments->file;
 	snprintf(save->files, sizeof(save->files), "%s",
 	         web->face->config->web.files ? web->face->config->web.files : "");
 	return http_defer(request, http_worker(web, &web->saves), &save->job);

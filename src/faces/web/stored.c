@@ -20,7 +20,7 @@
 
 struct stored {
 	struct job job;
-	char file[FILE_MAX], instance[128];
+	const char *file, *instance;
 	bool configurable;
 	const char *why; /* it is not configurable */
 };
@@ -74,7 +74,6 @@ static void stored_answer(struct stored *stored, const char *text, size_t len,
 	json_string(&json, "why", stored->configurable ? NULL : stored->why);
 	put_backup(&json, stored->file);
 	json_bool(&json, "edit", edit_is_on());
-	json_null(&json, "running_tag");
 	model_json(&json, rio);
 	json_finish(&json);
 }
@@ -118,8 +117,8 @@ int stored_get(struct request *request)
 
 	if (!stored)
 		return MHD_NO;
-	snprintf(stored->file, sizeof(stored->file), "%s", face->arguments->file);
-	snprintf(stored->instance, sizeof(stored->instance), "%s", face->arguments->instance);
+	stored->file = face->arguments->file;
+	stored->instance = face->arguments->instance;
 	stored->configurable = person_may_do(
 		http_descriptor(request), &face->config->web, PERSON_CONFIGURE,
 		http_header(request, "X-Remote-User"), person, &stored->why);

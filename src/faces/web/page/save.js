@@ -74,10 +74,8 @@ export function paint() {
 	buttons.restore.disabled = !draft.editable;
 	put(back, backup ? `The file of before, kept ${dateAndClock(backup.time)}, can take the place of `
 		+ "the present one; then the present one is kept." : "No file of before is kept.");
-	const {running_tag: runs, tag, writer, configurable} = draft.info ?? {};
-	put(running, configurable && writer ? `Nothing can be saved yet: ${writer}.`
-		: runs && runs !== tag ? "owsd is not running with this file: it has changed since owsd read it. "
-			+ "Saving, or systemctl reload, has owsd read it." : "");
+	const {writer, configurable} = draft.info ?? {};
+	put(running, configurable && writer ? `Nothing can be saved yet: ${writer}.` : "");
 	if (!shown)
 		return;
 	problems.replaceChildren(problemList());
