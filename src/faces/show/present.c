@@ -26,10 +26,15 @@ bool standing_any(const struct ows_alarm_state *state)
 	return state->stands || state->unarmed || state->limit_state != OWS_LIMIT_NORMAL;
 }
 
+bool standing_unacknowledged(const struct ows_alarm_state *state)
+{
+	return state->limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
+	       state->limit_state == OWS_LIMIT_RETURNED;
+}
+
 bool standing_wants_eyes(const struct ows_alarm_state *state)
 {
-	return state->stands || state->unarmed || state->limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
-	       state->limit_state == OWS_LIMIT_RETURNED;
+	return state->stands || state->unarmed || standing_unacknowledged(state);
 }
 
 const char *standing_text(const struct ows_alarm_state *state, char words[STANDING_WORDS])

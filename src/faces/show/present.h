@@ -22,6 +22,8 @@ struct ows_alarm_state standing_of(struct ows *h, int id);
 bool standing_possible(const struct ows_alarm_state *state);
 /* An alarm that is shelved does not stand. */
 bool standing_any(const struct ows_alarm_state *state);
+/* Does its limit alarm want an acknowledgement? */
+bool standing_unacknowledged(const struct ows_alarm_state *state);
 /*
  * Does the signal have an alarm that is not acknowledged? A device alarm cannot be
  * acknowledged.

@@ -12,6 +12,7 @@
 #include "src/faces/kit/command.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/names.h"
+#include "src/faces/show/present.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/paths.h"
 #include "src/ground/signal/value.h"
@@ -197,8 +198,7 @@ static bool wants_eyes(struct order *order)
 	struct ows_alarm_state state = {0};
 
 	ows_alarm_state(order->h, order->id, &state);
-	return state.limit_state == OWS_LIMIT_UNACKNOWLEDGED ||
-	       state.limit_state == OWS_LIMIT_RETURNED;
+	return standing_unacknowledged(&state);
 }
 
 static int acknowledge(struct order *order)

@@ -13,7 +13,7 @@
 #include "src/faces/show/journal_entry.h"
 #include "src/faces/show/journal_past.h"
 #include "src/faces/show/names.h"
-#include "src/tool/owsctl/alarms/alarms_live.h"
+#include "src/tool/owsctl/alarms/alarms.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/past.h"
 #include "src/tool/owsctl/table.h"
