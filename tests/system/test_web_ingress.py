@@ -181,7 +181,10 @@ def test_the_wires_are_scanned_for_the_person_whom_ingress_names(scene):
         # owsd has no wire yet when it begins to serve
         until(lambda: ask(server, "api/devices", X_Owsd="1")[0] == 200, 10, "a scan")
         assert ask(server, "api/devices")[0] == 403
+        assert json.loads(ask(server, "api/config")[1])["configurable"]
     with ingress(page.port, {}) as server:
+        stored = json.loads(ask(server, "api/config", X_Remote_User="root")[1])
+        assert not stored["configurable"] and "X-Remote-User-Name" in stored["why"], stored
         # Supervisor passes that on as the browser sent it
         status, body = ask(server, "api/devices", X_Owsd="1", X_Remote_User="root")
         assert status == 403 and b"X-Remote-User-Name" in body, body

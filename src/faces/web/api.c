@@ -17,7 +17,6 @@
 #include "src/faces/web/others.h"
 #include "src/faces/web/past.h"
 #include "src/faces/web/paths.h"
-#include "src/faces/web/person.h"
 #include "src/faces/web/show.h"
 #include "src/faces/web/stream.h"
 #include "src/ground/board/files.h"
@@ -39,20 +38,13 @@ static void put_machine(struct json *json)
 	json_string(json, "kernel", *kernel ? kernel : NULL);
 }
 
-static bool may(const struct request *request, enum person_deed deed, char person[PERSON])
-{
-	const char *why;
-
-	return person_may_do(http_descriptor(request), &request->web->face->config->web, deed,
-	                     http_named(request), person, &why);
-}
-
 static void put_info(struct json *json, const struct request *request)
 {
 	const struct web *web = request->web;
 	char person[PERSON] = "";
 	struct ows_daemon daemon = {0};
 	struct ows_log_line refused;
+	const char *why;
 	bool writable;
 	int64_t now_ns = ows_now();
 
@@ -73,9 +65,9 @@ static void put_info(struct json *json, const struct request *request)
 	                    : NULL);
 	json_int(json, "now", show_wall_ms(now_ns));
 	json_int(json, "since", web->since_ns / NS_PER_MS);
-	writable = may(request, PERSON_WRITE, person);
+	writable = http_may(request, PERSON_WRITE, person, &why);
 	json_bool(json, "writable", writable);
-	json_bool(json, "configurable", may(request, PERSON_CONFIGURE, person));
+	json_bool(json, "configurable", http_may(request, PERSON_CONFIGURE, person, &why));
 	json_string(json, "person", *person ? person : NULL);
 	json_bool(json, "history",
 	          past_is_there(web->face->arguments->instance, web->face->config));

@@ -442,18 +442,20 @@ static bool is_json(const char *type)
 	       (!type[len] || type[len] == ';' || type[len] == ' ');
 }
 
+bool http_may(const struct request *request, enum person_deed deed, char person[PERSON],
+              const char **why)
+{
+	return person_may_do(http_descriptor(request), &request->web->face->config->web, deed,
+	                     http_named(request), person, why);
+}
+
 unsigned guard_person(const struct request *request, enum person_deed deed, char person[PERSON],
                       const char **why)
 {
 	const char *mark = http_header(request, "X-Owsd");
 
 	*why = "expected the header X-Owsd: 1";
-	return mark && strcmp(mark, "1") == 0 &&
-	                       person_may_do(http_descriptor(request),
-	                                     &request->web->face->config->web, deed,
-	                                     http_named(request), person, why)
-	               ? 0
-	               : 403;
+	return mark && strcmp(mark, "1") == 0 && http_may(request, deed, person, why) ? 0 : 403;
 }
 
 unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],

@@ -70,6 +70,9 @@ int http_defer(struct request *request, struct jobs *jobs, struct job *job);
 /* Answer those whose jobs are done. */
 void http_done(struct jobs *jobs);
 
+/* May who asks do that? As person_may_do(), with the person whom a proxy names. */
+bool http_may(const struct request *request, enum person_deed deed, char person[PERSON],
+              const char **why);
 /*
  * May this request do what it asks? By headers that only the page sends, and the person. Returns 0,
  * with who it is in person; or the status of the refusal, with the reason in *why. Looks at the head

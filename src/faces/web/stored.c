@@ -119,9 +119,7 @@ int stored_get(struct request *request)
 		return MHD_NO;
 	stored->file = face->arguments->file;
 	stored->instance = face->arguments->instance;
-	stored->configurable = person_may_do(
-		http_descriptor(request), &face->config->web, PERSON_CONFIGURE,
-		http_header(request, "X-Remote-User"), person, &stored->why);
+	stored->configurable = http_may(request, PERSON_CONFIGURE, person, &stored->why);
 	return http_defer(request, http_worker(request->web, &request->web->drafts), &stored->job);
 }
 
