@@ -12,7 +12,6 @@
 #include "src/faces/web/api.h"
 #include "src/faces/web/draft.h"
 #include "src/faces/web/events.h"
-#include "src/faces/web/head.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/others.h"
 #include "src/faces/web/past.h"
@@ -161,26 +160,19 @@ static const struct web_path paths[] = {
 	{"api/trend", .answer = past_trend},
 	{"api/hour", .answer = past_hour},
 	{"api/records", .answer = past_records},
-	{"api/set", .post = true, .answer = command_set},
-	{"api/alarm", .post = true, .answer = command_alarm},
+	{"api/set", .post = true, .deed = PERSON_WRITE, .answer = command_set},
+	{"api/alarm", .post = true, .deed = PERSON_WRITE, .answer = command_alarm},
 	{"api/config", .answer = stored_get},
 	{"api/config/keys", .put = stored_keys},
-	{"api/config/draft", .post = true, .answer = draft_post},
-	{"api/config/save", .post = true, .answer = save_post},
-	{"api/config/restore", .post = true, .answer = save_restore},
+	{"api/config/draft", .post = true, .deed = PERSON_CONFIGURE, .answer = draft_post},
+	{"api/config/save", .post = true, .deed = PERSON_CONFIGURE, .answer = save_post},
+	{"api/config/restore", .post = true, .deed = PERSON_CONFIGURE, .answer = save_restore},
 	{"api/summary", .put = machines_summary},
 	{"api/others", .put = machines_others},
-	{"api/devices", .answer = devices_get},
+	/* it loads the wire */
+	{"api/devices", .deed = PERSON_CONFIGURE, .answer = devices_get},
 	{"metrics", .need = WEB_IMAGE, .answer = answer_metrics},
 };
-
-bool api_admits(const struct request *request, const char *path)
-{
-	const char *why;
-	char person[PERSON];
-
-	return head_large(path) && !guard_post(request, PERSON_CONFIGURE, person, &why);
-}
 
 const struct web_path *api_find(const char *path, bool post)
 {

@@ -22,8 +22,6 @@
 
 struct order {
 	struct job job;
-	const char *instance;
-	char person[PERSON];
 	int64_t came_ns;
 	int fd; /* of the request */
 	struct body body;
@@ -52,10 +50,10 @@ static struct face_command command_of(const struct order *order)
 
 	return (struct face_command){
 		.program = "owsd-web",
-		.instance = order->instance,
+		.instance = order->job.instance,
 		.name = body_string(&order->body, "name"),
 		.text = value && value->kind != BODY_NULL ? value->text : NULL,
-		.person = order->person,
+		.person = order->job.person,
 		.came_ns = order->came_ns,
 	};
 }
@@ -100,7 +98,7 @@ static int find_special(struct order *order)
 	enum attribute attribute;
 	int signal, id, err;
 
-	if (names_lookup(order->h, order->instance, body_string(&order->body, "name"), &signal,
+	if (names_lookup(order->h, order->job.instance, body_string(&order->body, "name"), &signal,
 	                 &attribute) ||
 	    attribute_table[attribute].driver || !attribute_table[attribute].writable ||
 	    ows_info(order->h, signal, &order->info))
@@ -110,7 +108,7 @@ static int find_special(struct order *order)
 	order->info.type = attribute_table[attribute].type;
 	order->info.min = order->info.max = NAN;
 	id = ows_find(order->h, body_string(&order->body, "name"));
-	err = id < 0 ? id : ows_for(order->h, order->person);
+	err = id < 0 ? id : ows_for(order->h, order->job.person);
 	return err ? err : id;
 }
 
@@ -125,7 +123,7 @@ static bool command_begin(struct order *order)
 		job_error(&order->job, 503, "%s: not set: the client has hung up", command.name);
 		return false;
 	}
-	err = ows_open_as(order->instance, OWS_CONTROL, "owsd-web", &order->h);
+	err = ows_open_as(order->job.instance, OWS_CONTROL, "owsd-web", &order->h);
 	if (err == -ENOENT)
 		err = -ESTALE; /* of owsd, not of the name */
 	if (!err) {
@@ -252,46 +250,33 @@ static void run_alarm(struct job *job)
 
 /* --- Requests -------------------------------------------------------------------------------- */
 
-/* False after answering. */
-static bool may(struct request *request, struct order *order, int *result)
+/* Reads the body; what is wrong in it, or NULL. */
+static const char *wrong_body(struct order *order, const char *(*wrong)(const struct body *body))
 {
-	const char *why;
-	unsigned status = guard_post(request, PERSON_WRITE, order->person, &why);
-
-	if (status)
-		*result = http_error(request, status, "%s", why);
-	else if (body_parse(order->job.posted.bytes, order->job.posted.len, &order->body))
-		*result = http_error(request, 400,
-		                     "expected a JSON object, such as {\"name\":\"pump\","
-		                     "\"value\":true}");
-	else if (!*body_string(&order->body, "name"))
-		*result = http_error(request, 400, "expected \"name\": the name of a signal");
-	else
-		return true;
-	return false;
+	if (body_parse(order->job.posted.bytes, order->job.posted.len, &order->body))
+		return "expected a JSON object, such as {\"name\":\"pump\",\"value\":true}";
+	if (!*body_string(&order->body, "name"))
+		return "expected \"name\": the name of a signal";
+	return wrong(&order->body);
 }
 
 static int command_give(struct request *request, void (*run)(struct job *job),
                         const char *(*wrong)(const struct body *body))
 {
 	struct order *order = (struct order *)http_job(request, sizeof(*order), run);
-	int result = MHD_NO;
+	const char *why;
+	int result;
 
 	if (!order)
 		return MHD_NO;
 	order->came_ns = request->came_ns;
 	order->fd = http_descriptor(request);
-	order->instance = request->web->face->arguments->instance;
-	if (!may(request, order, &result)) {
-		job_free(&order->job);
-		return result;
-	}
-	if (wrong(&order->body)) {
-		result = http_error(request, 400, "%s", wrong(&order->body));
-		job_free(&order->job);
-		return result;
-	}
-	return http_defer(request, request->web->commands, &order->job);
+	why = wrong_body(order, wrong);
+	if (!why)
+		return http_defer(request, request->web->commands, &order->job);
+	result = http_error(request, 400, "%s", why);
+	job_free(&order->job);
+	return result;
 }
 
 static const char *wrong_set(const struct body *body)

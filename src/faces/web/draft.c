@@ -204,14 +204,6 @@ static void draft_run(struct job *job)
 
 int draft_post(struct request *request)
 {
-	const char *why;
-	char person[PERSON];
-	unsigned status = guard_post(request, PERSON_CONFIGURE, person, &why);
-
-	if (status)
-		return http_error(request, status, "%s", why);
-	if (request->posted.dropped)
-		return http_error(request, 503, DRAFT_BUSY);
 	return http_defer(request, http_worker(request->web, &request->web->drafts),
 	                  http_job(request, sizeof(struct job), draft_run));
 }

@@ -11,7 +11,6 @@
 #include "src/faces/web/problems.h"
 
 #define DRAFT_MAX (1u << 20) /* bytes of a text */
-#define DRAFT_BUSY "others are editing just now: try again in a second"
 
 struct request;
 

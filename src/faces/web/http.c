@@ -15,7 +15,6 @@
 #include "src/faces/web/head.h"
 #include "src/faces/web/http.h"
 #include "src/faces/web/origin.h"
-#include "src/faces/web/person.h"
 
 #define MEMORY (24u << 10) /* of a connection: its head twice, and what is sent */
 #define SHORT (16u << 10)  /* an answer that is always given */
@@ -115,6 +114,8 @@ struct job *http_job(struct request *request, size_t size, void (*run)(struct jo
 	if (!job)
 		return NULL;
 	job->run = run;
+	job->instance = request->web->face->arguments->instance;
+	memcpy(job->person, request->person, sizeof(job->person));
 	job->posted = request->posted;
 	request->posted = (struct posted){0};
 	return job;
@@ -201,6 +202,43 @@ static int answer_file(struct request *request, const char *path)
 	return http_answer(request, status, response);
 }
 
+/* --- Rights ---------------------------------------------------------------------------------- */
+
+static bool is_json(const char *type)
+{
+	size_t len = strlen("application/json");
+
+	return type && strncasecmp(type, "application/json", len) == 0 &&
+	       (!type[len] || type[len] == ';' || type[len] == ' ');
+}
+
+bool http_may(const struct request *request, enum person_deed deed, char person[PERSON],
+              const char **why)
+{
+	return person_may_do(http_descriptor(request), &request->web->face->config->web, deed,
+	                     http_named(request), person, why);
+}
+
+/*
+ * May this request do what it asks? By headers that only the page sends, and the person. Returns 0,
+ * or the status of the refusal, with the reason in *why. Looks at the head alone, and reads
+ * /etc/passwd and /etc/group.
+ */
+static unsigned guard(struct request *request, const struct web_path *path, const char **why)
+{
+	const char *mark = http_header(request, "X-Owsd");
+
+	if (path->deed == PERSON_LOOK)
+		return 0;
+	*why = "expected Content-Type: application/json";
+	if (path->post && !is_json(http_header(request, "Content-Type")))
+		return 415;
+	*why = "expected the header X-Owsd: 1";
+	return mark && strcmp(mark, "1") == 0 && http_may(request, path->deed, request->person, why)
+	               ? 0
+	               : 403;
+}
+
 /* --- Requests -------------------------------------------------------------------------------- */
 
 static bool is_foreign(const struct request *request)
@@ -212,10 +250,17 @@ static bool is_foreign(const struct request *request)
 static int answer_path(struct request *request, const struct web_path *path)
 {
 	const struct face *face = request->web->face;
+	const char *why;
+	unsigned status = guard(request, path, &why);
 	struct json json;
 	char *text;
 	size_t len;
 
+	if (status)
+		return http_error(request, status, "%s", why);
+	if (request->posted.dropped)
+		return http_error(request, 503,
+		                  "others are editing just now: try again in a second");
 	if (path->need == WEB_IMAGE && !face->ows)
 		return http_error(request, 503, "owsd %s has not run yet: start it",
 		                  face->arguments->instance);
@@ -268,12 +313,16 @@ static unsigned refused(const struct request *request, const char **why)
 	return host && origin_host(host, local, machine, options->hosts) ? 0 : 421;
 }
 
-/* The head has passed head_check(): its length is a number. */
+/*
+ * The head has passed head_check(): its length is a number. A large body is that of a configuration,
+ * by a person who may edit it.
+ */
 static void expect_body(struct request *request, const char *url)
 {
-	const char *length = http_header(request, "Content-Length");
+	const char *length = http_header(request, "Content-Length"), *why;
 	size_t size = length ? strtoul(length, NULL, 10) : 0;
-	bool may = size > BODY_MAX && !is_foreign(request) && request->web->admits(request, url);
+	const struct web_path *path = head_large(url) ? request->web->route(url + 1, true) : NULL;
+	bool may = size > BODY_MAX && path && !is_foreign(request) && !guard(request, path, &why);
 
 	posted_begin(&request->posted, size, &request->web->large, may, ows_now());
 }
@@ -430,39 +479,4 @@ void http_close(struct web *web)
 	if (web->daemon)
 		MHD_stop_daemon(web->daemon);
 	web->daemon = NULL;
-}
-
-/* --- Rights ---------------------------------------------------------------------------------- */
-
-static bool is_json(const char *type)
-{
-	size_t len = strlen("application/json");
-
-	return type && strncasecmp(type, "application/json", len) == 0 &&
-	       (!type[len] || type[len] == ';' || type[len] == ' ');
-}
-
-bool http_may(const struct request *request, enum person_deed deed, char person[PERSON],
-              const char **why)
-{
-	return person_may_do(http_descriptor(request), &request->web->face->config->web, deed,
-	                     http_named(request), person, why);
-}
-
-unsigned guard_person(const struct request *request, enum person_deed deed, char person[PERSON],
-                      const char **why)
-{
-	const char *mark = http_header(request, "X-Owsd");
-
-	*why = "expected the header X-Owsd: 1";
-	return mark && strcmp(mark, "1") == 0 && http_may(request, deed, person, why) ? 0 : 403;
-}
-
-unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],
-                    const char **why)
-{
-	if (is_json(http_header(request, "Content-Type")))
-		return guard_person(request, deed, person, why);
-	*why = "expected Content-Type: application/json";
-	return 415;
 }

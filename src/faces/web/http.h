@@ -10,7 +10,6 @@
 #include <stdio.h>
 
 #include "src/faces/web/jobs.h"
-#include "src/faces/web/person.h"
 #include "src/faces/web/web.h"
 
 struct MHD_Connection;
@@ -26,6 +25,7 @@ struct request {
 	int64_t came_ns; /* it came later than that */
 	size_t held;     /* bytes of the answer that count in web->held */
 	struct posted posted;
+	char person[PERSON]; /* who asks, where the path asks for rights */
 };
 
 /* Start it. 0 or a negative errno. */
@@ -56,8 +56,8 @@ int http_error(struct request *request, unsigned status, const char *format, ...
 	__attribute__((format(printf, 3, 4)));
 
 /*
- * A job of so many bytes, zeroed, that begins with a struct job; it gets the body of the request.
- * NULL: no memory. Then give it to http_defer() or job_free().
+ * A job of so many bytes, zeroed, that begins with a struct job; it gets the body of the request,
+ * and who asks. NULL: no memory. Then give it to http_defer() or job_free().
  */
 struct job *http_job(struct request *request, size_t size, void (*run)(struct job *job));
 /*
@@ -73,13 +73,3 @@ void http_done(struct jobs *jobs);
 /* May who asks do that? As person_may_do(), with the person whom a proxy names. */
 bool http_may(const struct request *request, enum person_deed deed, char person[PERSON],
               const char **why);
-/*
- * May this request do what it asks? By headers that only the page sends, and the person. Returns 0,
- * with who it is in person; or the status of the refusal, with the reason in *why. Looks at the head
- * alone, and reads /etc/passwd and /etc/group.
- */
-unsigned guard_person(const struct request *request, enum person_deed deed, char person[PERSON],
-                      const char **why);
-/* The same of a POST, whose body is JSON. */
-unsigned guard_post(const struct request *request, enum person_deed deed, char person[PERSON],
-                    const char **why);

@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "src/faces/web/person.h"
+
 /*
  * The bytes of a body while they come, and until they are read. Few bodies may be large: there is
  * room for so many at a time. One thread, the loop of the face.
@@ -43,8 +45,10 @@ struct job {
 	void (*run)(struct job *job); /* on the thread: fills status, text, len */
 	struct request *request;      /* the loop's; NULL: nobody waits any more */
 	uint64_t peer;                /* who asks, as person_number() has it */
-	uint64_t turn;                /* of jobs.c: the jobs of a turn are of different peers */
-	struct posted posted;         /* the body of the request */
+	char person[PERSON];          /* who that is, where the path asks for rights */
+	const char *instance;
+	uint64_t turn;        /* of jobs.c: the jobs of a turn are of different peers */
+	struct posted posted; /* the body of the request */
 	unsigned status;
 	char *text; /* JSON, allocated; NULL: no memory */
 	size_t len;

@@ -272,7 +272,6 @@ static int open_web(struct face *face)
 	web.face = face;
 	web.since_ns = ows_now();
 	web.route = api_find;
-	web.admits = api_admits;
 	face->own = &web;
 	face->pace_ns = PACE_NS;
 	face->alarms_after_ns = face->commands_after_ns = face->tick_ns = ows_now();

@@ -26,7 +26,6 @@
 
 struct past_job {
 	struct job job;
-	const char *instance;
 	char directory[DIRECTORY], name[NAME];
 	char identity[2 * NAME]; /* of the signal that has the name now; else the name */
 	int64_t from_ns, until_ns;
@@ -66,13 +65,9 @@ static bool number(const struct request *request, const char *name, long long le
 static struct past_job *make(struct request *request, void (*run)(struct job *job))
 {
 	const struct face *face = request->web->face;
-	struct past_job *past = calloc(1, sizeof(*past));
+	struct past_job *past = (struct past_job *)http_job(request, sizeof(*past), run);
 
-	if (!past)
-		return NULL;
-	past->job.run = run;
-	past->instance = face->arguments->instance;
-	if (!place(past->instance, face->config, past->directory))
+	if (past && !place(past->job.instance, face->config, past->directory))
 		past->directory[0] = '\0';
 	return past;
 }
@@ -337,8 +332,8 @@ static void run_hour(struct job *job)
 
 	if (!open_history(past, &h))
 		return;
-	if (ows_open_as(past->instance, OWS_READ, "owsd-web", &ows))
-		job_error(job, 503, "owsd %s has not run yet: start it", past->instance);
+	if (ows_open_as(past->job.instance, OWS_READ, "owsd-web", &ows))
+		job_error(job, 503, "owsd %s has not run yet: start it", past->job.instance);
 	else
 		put_hour(past, ows, h);
 	ows_close(ows);
@@ -400,7 +395,7 @@ static void run_journal(struct job *job)
 	if (*past->directory && ows_history_open(NULL, past->directory, &history) == 0)
 		journal_past(history, &now, past->from_ns, past->until_ns, NULL, 0,
 		             (unsigned)past->n + RINGS, &older);
-	if ((ows_open_as(past->instance, OWS_READ, "owsd-web", &h) == 0 &&
+	if ((ows_open_as(past->job.instance, OWS_READ, "owsd-web", &h) == 0 &&
 	     !journal_look(h, NULL, 0, &entries)) ||
 	    !journal_past_drop(&older, &entries) || !journal_add(&entries, &older))
 		job_error(job, 500, "no memory");

@@ -10,6 +10,7 @@
 struct config_web;
 
 enum person_deed {
+	PERSON_LOOK,      /* all that reach the page */
 	PERSON_WRITE,     /* outputs, acknowledgements */
 	PERSON_CONFIGURE, /* the configuration */
 };

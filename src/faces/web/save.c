@@ -21,8 +21,7 @@
 struct save {
 	struct job job;
 	bool restore;
-	const char *instance, *file; /* file: that is saved */
-	char person[PERSON];
+	const char *file;       /* that is saved */
 	char files[SAVE_FILES]; /* where the files of the page are; "": the program's own place */
 	struct body body;
 };
@@ -87,7 +86,7 @@ static void save_ask(struct save *save, const struct writer_order *order)
 		answer_with(save, answer, order->text);
 		problems_free(&answer->problems);
 	} else if (err == -ENOENT || err == -ECONNREFUSED) {
-		writer_remedy(save->instance, words);
+		writer_remedy(save->job.instance, words);
 		job_error(&save->job, 503, "%s", words);
 	} else if (err == -EACCES || err == -EPERM) {
 		job_error(&save->job, 503,
@@ -141,7 +140,7 @@ static bool loses_bytes(const struct save *save)
 static void save_run(struct job *job)
 {
 	struct save *save = (struct save *)job;
-	struct writer_order order = {.instance = save->instance, .person = save->person};
+	struct writer_order order = {.instance = job->instance, .person = job->person};
 	const struct body_member *text, *base;
 
 	if (body_parse(job->posted.bytes, job->posted.len, &save->body)) {
@@ -172,21 +171,11 @@ static void save_run(struct job *job)
 static int save_give(struct request *request, bool restore)
 {
 	struct web *web = request->web;
-	const char *why;
-	char person[PERSON];
-	unsigned status = guard_post(request, PERSON_CONFIGURE, person, &why);
-	struct save *save;
+	struct save *save = (struct save *)http_job(request, sizeof(*save), save_run);
 
-	if (status)
-		return http_error(request, status, "%s", why);
-	if (request->posted.dropped)
-		return http_error(request, 503, DRAFT_BUSY);
-	save = (struct save *)http_job(request, sizeof(*save), save_run);
 	if (!save)
 		return MHD_NO;
 	save->restore = restore;
-	save->instance = web->face->arguments->instance;
-	memcpy(save->person, person, sizeof(person));
 	save->file = web->face->arguments->file;
 	snprintf(save->files, sizeof(save->files), "%s",
 	         web->face->config->web.files ? web->face->config->web.files : "");

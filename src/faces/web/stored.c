@@ -20,7 +20,7 @@
 
 struct stored {
 	struct job job;
-	const char *file, *instance;
+	const char *file;
 	bool configurable;
 	const char *why; /* it is not configurable */
 };
@@ -69,8 +69,8 @@ static void stored_answer(struct stored *stored, const char *text, size_t len,
 	json_string(&json, "tag", tag);
 	json_bytes(&json, "text", text, len);
 	json_bool(&json, "configurable", stored->configurable);
-	writer_remedy(stored->instance, remedy);
-	json_string(&json, "writer", writer_is_there(stored->instance) ? NULL : remedy);
+	writer_remedy(stored->job.instance, remedy);
+	json_string(&json, "writer", writer_is_there(stored->job.instance) ? NULL : remedy);
 	json_string(&json, "why", stored->configurable ? NULL : stored->why);
 	put_backup(&json, stored->file);
 	json_bool(&json, "edit", edit_is_on());
@@ -111,14 +111,12 @@ static void stored_run(struct job *job)
 
 int stored_get(struct request *request)
 {
-	const struct face *face = request->web->face;
 	struct stored *stored = (struct stored *)http_job(request, sizeof(*stored), stored_run);
 	char person[PERSON];
 
 	if (!stored)
 		return MHD_NO;
-	stored->file = face->arguments->file;
-	stored->instance = face->arguments->instance;
+	stored->file = request->web->face->arguments->file;
 	stored->configurable = http_may(request, PERSON_CONFIGURE, person, &stored->why);
 	return http_defer(request, http_worker(request->web, &request->web->drafts), &stored->job);
 }

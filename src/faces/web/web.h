@@ -12,6 +12,7 @@
 #include "src/faces/web/doors.h"
 #include "src/faces/web/files.h"
 #include "src/faces/web/pace.h"
+#include "src/faces/web/person.h"
 #include "src/faces/web/recent.h"
 
 #define WEB_ALARMS 64 /* the last ones, for streams that are behind */
@@ -29,6 +30,7 @@ struct web_path {
 		WEB_IMAGE, /* the last image, though owsd may have ended */
 		WEB_OWSD,
 	} need;
+	enum person_deed deed; /* of whoever may not do that the request is refused, too */
 	/* Answers the request, and returns what libmicrohttpd wants; or */
 	int (*answer)(struct request *request);
 	/* writes the members of the object that is the answer. */
@@ -43,8 +45,6 @@ struct others;
 struct web {
 	struct face *face;
 	const struct web_path *(*route)(const char *path, bool post); /* NULL: there is none */
-	/* May a body be large that comes to that path? */
-	bool (*admits)(const struct request *request, const char *path);
 	struct MHD_Daemon *daemon;
 	int epoll; /* of libmicrohttpd */
 	struct doors doors;
