@@ -36,9 +36,8 @@ static void command_answer(struct order *order, const char *result)
 {
 	struct json json;
 
-	if (!json_start(&json, &order->job.text, &order->job.len))
+	if (!job_json(&order->job, 200, &json))
 		return;
-	order->job.status = 200;
 	json_bool(&json, "ok", true);
 	json_string(&json, "result", result);
 	json_finish(&json);
@@ -273,7 +272,7 @@ static int command_give(struct request *request, void (*run)(struct job *job),
 	order->fd = http_descriptor(request);
 	why = wrong_body(order, wrong);
 	if (!why)
-		return http_defer(request, request->web->commands, &order->job);
+		return http_defer(request, WEB_COMMANDS, &order->job);
 	result = http_error(request, 400, "%s", why);
 	job_free(&order->job);
 	return result;

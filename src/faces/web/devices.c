@@ -114,5 +114,5 @@ int devices_get(struct request *request)
 		                  "ids=: expected ids of at most %d devices, with commas between",
 		                  IDS);
 	}
-	return http_defer(request, http_worker(web, &web->scans), &devices->job);
+	return http_defer(request, WEB_SCANS, &devices->job);
 }

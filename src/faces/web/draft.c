@@ -80,9 +80,8 @@ static void draft_answer(struct job *job, const struct rio *rio, int err,
 {
 	struct json json;
 
-	if (!json_start(&json, &job->text, &job->len))
+	if (!job_json(job, 200, &json))
 		return;
-	job->status = 200;
 	json_bytes(&json, "text", rio->text, rio->len);
 	json_bool(&json, "valid", err == 0);
 	problems_json(&json, problems, rio);
@@ -96,9 +95,8 @@ static void draft_refuse(struct job *job, const struct problems *problems, const
 	struct json json;
 	int line;
 
-	if (!json_start(&json, &job->text, &job->len))
+	if (!job_json(job, 422, &json))
 		return;
-	job->status = 422;
 	json_string(&json, "error", problems_first(problems, &line));
 	problems_json(&json, problems, rio);
 	json_finish(&json);
@@ -204,6 +202,5 @@ static void draft_run(struct job *job)
 
 int draft_post(struct request *request)
 {
-	return http_defer(request, http_worker(request->web, &request->web->drafts),
-	                  http_job(request, sizeof(struct job), draft_run));
+	return http_defer(request, WEB_DRAFTS, http_job(request, sizeof(struct job), draft_run));
 }

@@ -121,20 +121,18 @@ struct job *http_job(struct request *request, size_t size, void (*run)(struct jo
 	return job;
 }
 
-struct jobs *http_worker(struct web *web, struct jobs **worker)
+int http_defer(struct request *request, enum web_worker worker, struct job *job)
 {
-	if (!*worker && !web->ends && web->bell >= 0)
-		*worker = jobs_start(web->bell);
-	return *worker;
-}
+	struct web *web = request->web;
+	struct jobs **jobs = &web->workers[worker];
 
-int http_defer(struct request *request, struct jobs *jobs, struct job *job)
-{
 	if (!job)
 		return MHD_NO;
-	job->peer = person_number(http_descriptor(request), &request->web->face->config->web,
+	if (!*jobs && !web->ends && web->bell >= 0)
+		*jobs = jobs_start(web->bell);
+	job->peer = person_number(http_descriptor(request), &web->face->config->web,
 	                          http_named(request));
-	if (!jobs || !jobs_give(jobs, job)) {
+	if (!*jobs || !jobs_give(*jobs, job)) {
 		job_free(job);
 		return http_error(request, 503, "too many requests: try again in a second");
 	}
@@ -144,18 +142,23 @@ int http_defer(struct request *request, struct jobs *jobs, struct job *job)
 	return MHD_YES;
 }
 
-void http_done(struct jobs *jobs)
+static void done(struct job *job)
+{
+	if (!job->request) {
+		job_free(job);
+		return;
+	}
+	job->request->answered = true;
+	MHD_resume_connection(job->request->connection);
+}
+
+void http_done(struct web *web)
 {
 	struct job *job;
 
-	while (jobs && (job = jobs_take(jobs))) {
-		if (!job->request) {
-			job_free(job);
-			continue;
-		}
-		job->request->answered = true;
-		MHD_resume_connection(job->request->connection);
-	}
+	for (int i = 0; i < WEB_WORKERS; i++)
+		while (web->workers[i] && (job = jobs_take(web->workers[i])))
+			done(job);
 }
 
 static int answer_job(struct request *request)

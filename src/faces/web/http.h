@@ -60,15 +60,10 @@ int http_error(struct request *request, unsigned status, const char *format, ...
  * and who asks. NULL: no memory. Then give it to http_defer() or job_free().
  */
 struct job *http_job(struct request *request, size_t size, void (*run)(struct job *job));
-/*
- * A worker of the program, started when it is first asked for; NULL: there is no thread, or the end
- * has come.
- */
-struct jobs *http_worker(struct web *web, struct jobs **worker);
 /* Have a worker answer it. Takes the job; NULL: no memory. */
-int http_defer(struct request *request, struct jobs *jobs, struct job *job);
+int http_defer(struct request *request, enum web_worker worker, struct job *job);
 /* Answer those whose jobs are done. */
-void http_done(struct jobs *jobs);
+void http_done(struct web *web);
 
 /* May who asks do that? As person_may_do(), with the person whom a proxy names. */
 bool http_may(const struct request *request, enum person_deed deed, char person[PERSON],

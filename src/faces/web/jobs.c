@@ -161,6 +161,12 @@ void job_free(struct job *job)
 	free(job);
 }
 
+bool job_json(struct job *job, unsigned status, struct json *json)
+{
+	job->status = status;
+	return json_start(json, &job->text, &job->len);
+}
+
 void job_error(struct job *job, unsigned status, const char *format, ...)
 {
 	char words[512];
@@ -172,8 +178,7 @@ void job_error(struct job *job, unsigned status, const char *format, ...)
 	va_end(args);
 	free(job->text);
 	job->text = NULL;
-	job->status = status;
-	if (!json_start(&json, &job->text, &job->len))
+	if (!job_json(job, status, &json))
 		return;
 	json_string(&json, "error", words);
 	json_finish(&json);

@@ -67,6 +67,10 @@ struct job *jobs_take(struct jobs *jobs);
 void jobs_end(struct jobs *jobs);
 void jobs_free(struct jobs *jobs);
 
+struct json;
+
+/* Begin the object that answers a job. False: no memory. */
+bool job_json(struct job *job, unsigned status, struct json *json);
 /* Answer a job with an error. */
 void job_error(struct job *job, unsigned status, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));

@@ -297,11 +297,8 @@ static int open_web(struct face *face)
 	follow_others(&web);
 	face->config->web.configure |= edit_is_on();
 	web.bell = bell_open();
-	if (web.bell >= 0) {
-		web.past = jobs_start(web.bell);
-		web.commands = jobs_start(web.bell);
+	if (web.bell >= 0)
 		face_watch(face, web.bell, POLLIN);
-	}
 	face_watch(face, web.epoll, POLLIN);
 	face_watch(face, web.doors.epoll, POLLIN);
 	return 0;
@@ -399,11 +396,7 @@ static void event(struct face *face, const struct face_event *event)
 	case FACE_DESCRIPTOR:
 		if (event->fd == web->bell) {
 			bell_clear(web->bell);
-			http_done(web->past);
-			http_done(web->commands);
-			http_done(web->drafts);
-			http_done(web->saves);
-			http_done(web->scans);
+			http_done(web);
 		}
 		if (event->fd == web->doors.epoll)
 			open_door(web);
@@ -423,13 +416,18 @@ static void tick(struct face *face, int64_t now_ns)
 	owsd_web_run(web);
 }
 
-static void end_jobs(struct jobs *jobs)
+/* A request whose body comes then is refused. */
+static void end_jobs(struct web *web)
 {
-	if (!jobs)
-		return;
-	jobs_end(jobs);
-	http_done(jobs);
-	jobs_free(jobs);
+	web->ends = true;
+	for (int i = 0; i < WEB_WORKERS; i++) {
+		if (!web->workers[i])
+			continue;
+		jobs_end(web->workers[i]);
+		http_done(web);
+		jobs_free(web->workers[i]);
+		web->workers[i] = NULL;
+	}
 }
 
 /* Each stream has a proper end: Cockpit's bridge of Debian 12 would wait for it for ever. */
@@ -448,14 +446,7 @@ static void close_web(struct face *face)
 {
 	struct web *web = face->own;
 
-	web->ends = true;
-	end_jobs(web->past);
-	end_jobs(web->commands);
-	end_jobs(web->drafts);
-	end_jobs(web->saves);
-	end_jobs(web->scans);
-	web->past = web->commands = web->drafts = web->saves = web->scans =
-		NULL; /* a request whose body comes now is refused */
+	end_jobs(web);
 	others_end(web->others);
 	web->others = NULL;
 	doors_close(&web->doors);

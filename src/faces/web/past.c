@@ -125,9 +125,8 @@ static void put_trend(struct past_job *past, const struct ows_history_signal *si
 {
 	struct json json;
 
-	if (!json_start(&json, &past->job.text, &past->job.len))
+	if (!job_json(&past->job, 200, &json))
 		return;
-	past->job.status = 200;
 	json_string(&json, "name", past->name);
 	json_string(&json, "unit", *signal->unit ? signal->unit : NULL);
 	json_int(&json, "until", points[past->n - 1].until_ns / NS_PER_MS);
@@ -205,9 +204,8 @@ static void put_records(struct past_job *past, struct ows_history *h)
 	struct json json;
 	int got, count = 0;
 
-	if (!json_start(&json, &past->job.text, &past->job.len))
+	if (!job_json(&past->job, 200, &json))
 		return;
-	past->job.status = 200;
 	json_string(&json, "name", past->name);
 	json_array(&json, "records");
 	while ((got = ows_history_next(h, &item, 1)) > 0 && count++ < RECORDS)
@@ -271,14 +269,14 @@ static int past_stretch(struct request *request, void (*run)(struct job *job))
 		return http_error(request, 400, "points=: expected a number from 1 to %d", POINTS);
 	past = make(request, run);
 	if (!past)
-		return http_defer(request, request->web->past, NULL);
+		return http_defer(request, WEB_PAST, NULL);
 	snprintf(past->name, sizeof(past->name), "%s", name);
 	snprintf(past->identity, sizeof(past->identity), "%s",
 	         identity_of(request->web->face->ows, name));
 	past->from_ns = from * NS_PER_MS;
 	past->until_ns = until * NS_PER_MS;
 	past->n = (int)n;
-	return http_defer(request, request->web->past, &past->job);
+	return http_defer(request, WEB_PAST, &past->job);
 }
 
 int past_trend(struct request *request)
@@ -301,9 +299,8 @@ static void put_hour(struct past_job *past, struct ows *ows, struct ows_history 
 	struct json json;
 	int i;
 
-	if (!json_start(&json, &past->job.text, &past->job.len))
+	if (!job_json(&past->job, 200, &json))
 		return;
-	past->job.status = 200;
 	json_int(&json, "from", past->from_ns / NS_PER_MS);
 	json_int(&json, "step", (past->until_ns - past->from_ns) / HOUR_POINTS / NS_PER_MS);
 	json_object(&json, "signals");
@@ -355,7 +352,7 @@ int past_hour(struct request *request)
 		past->from_ns = past->until_ns - 3600 * NS_PER_S;
 		past->n = HOUR_POINTS;
 	}
-	return http_defer(request, request->web->past, past ? &past->job : NULL);
+	return http_defer(request, WEB_PAST, past ? &past->job : NULL);
 }
 
 /* --- Journals -------------------------------------------------------------------------------- */
@@ -367,9 +364,8 @@ static void put_journal(struct past_job *past, const struct journal_entries *ent
 	unsigned count = 0;
 	struct json json;
 
-	if (!json_start(&json, &past->job.text, &past->job.len))
+	if (!job_json(&past->job, 200, &json))
 		return;
-	past->job.status = 200;
 	json_array(&json, "entries");
 	for (unsigned i = entries->count; i-- > 0 && count < (unsigned)past->n;) {
 		int64_t at_ns = now->wall - (now->boot - entries->entry[i].when_ns);
@@ -424,5 +420,5 @@ int past_journal(struct request *request)
 		past->until_ns = until * NS_PER_MS;
 		past->n = (int)n;
 	}
-	return http_defer(request, request->web->past, past ? &past->job : NULL);
+	return http_defer(request, WEB_PAST, past ? &past->job : NULL);
 }

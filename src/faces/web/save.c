@@ -66,9 +66,8 @@ static void answer_with(struct save *save, const struct writer_answer *answer, c
 	};
 	struct json json;
 
-	if (!json_start(&json, &save->job.text, &save->job.len))
+	if (!job_json(&save->job, statuses[answer->status], &json))
 		return;
-	save->job.status = statuses[answer->status];
 	if (answer->status == WRITER_DONE)
 		put_done(&json, answer);
 	else
@@ -179,7 +178,7 @@ static int save_give(struct request *request, bool restore)
 	save->file = web->face->arguments->file;
 	snprintf(save->files, sizeof(save->files), "%s",
 	         web->face->config->web.files ? web->face->config->web.files : "");
-	return http_defer(request, http_worker(web, &web->saves), &save->job);
+	return http_defer(request, WEB_SAVES, &save->job);
 }
 
 int save_post(struct request *request)

@@ -61,10 +61,9 @@ static void stored_answer(struct stored *stored, const char *text, size_t len,
 	char tag[TAG_TEXT], remedy[WRITER_WORDS];
 	struct json json;
 
-	if (!json_start(&json, &stored->job.text, &stored->job.len))
+	if (!job_json(&stored->job, 200, &json))
 		return;
 	tag_print(text, len, tag);
-	stored->job.status = 200;
 	json_string(&json, "file", stored->file);
 	json_string(&json, "tag", tag);
 	json_bytes(&json, "text", text, len);
@@ -118,7 +117,7 @@ int stored_get(struct request *request)
 		return MHD_NO;
 	stored->file = request->web->face->arguments->file;
 	stored->configurable = http_may(request, PERSON_CONFIGURE, person, &stored->why);
-	return http_defer(request, http_worker(request->web, &request->web->drafts), &stored->job);
+	return http_defer(request, WEB_DRAFTS, &stored->job);
 }
 
 void stored_keys(struct json *json, const struct request *request)

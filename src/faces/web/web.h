@@ -37,6 +37,16 @@ struct web_path {
 	void (*put)(struct json *json, const struct request *request);
 };
 
+/* Threads for what takes longer than the loop may wait. */
+enum web_worker {
+	WEB_PAST,
+	WEB_COMMANDS,
+	WEB_DRAFTS,
+	WEB_SAVES,
+	WEB_SCANS,
+	WEB_WORKERS,
+};
+
 struct MHD_Daemon;
 struct stream;
 struct jobs;
@@ -52,13 +62,13 @@ struct web {
 	struct recent recent;
 	int *ids;              /* for ows_alarm_state(), of signals that can have alarms; else -1 */
 	struct others *others; /* NULL: none are named */
-	struct jobs *past, *commands, *drafts, *saves, *scans;
-	unsigned large;      /* bodies that are large */
-	size_t held;         /* bytes of answers that are being sent */
-	int bell;            /* of all */
-	uint32_t generation; /* of the table; 0: owsd was never there */
-	uint32_t refused;    /* number of the reload that owsd has refused; 0: none */
-	int64_t since_ns;    /* when owsd-web was started */
+	struct jobs *workers[WEB_WORKERS]; /* NULL: nobody has asked for it yet */
+	unsigned large;                    /* bodies that are large */
+	size_t held;                       /* bytes of answers that are being sent */
+	int bell;                          /* of all */
+	uint32_t generation;               /* of the table; 0: owsd was never there */
+	uint32_t refused;                  /* number of the reload that owsd has refused; 0: none */
+	int64_t since_ns;                  /* when owsd-web was started */
 	bool ends;
 	struct stream *streams;
 	unsigned stream_count;
