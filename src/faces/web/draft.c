@@ -34,24 +34,22 @@ static void check_items(const char *text, size_t len, struct config_report *repo
 	static const char *const argv[] = {"owsd-writer", "--draft", NULL};
 	struct child child = {
 		.argv = argv, .input = text, .input_len = len, .until_ns = ows_now() + CHECK_NS};
-	struct writer_answer *answer = calloc(1, sizeof(*answer));
-	int err = answer ? child_run(&child) : -ENOMEM;
+	struct writer_answer answer = {0};
+	int err = child_run(&child);
 
 	if (!err)
-		err = writer_parse(child.out, child.out_len, answer);
+		err = writer_parse(child.out, child.out_len, &answer);
 	if (err)
 		report_warning(report, (struct rio_position){0},
 		               "owsd-writer does not check the items against their chips: %s",
 		               *child.why ? child.why : strerror(-err));
-	for (unsigned i = 0; answer && i < answer->problems.count; i++) {
-		const struct problem *problem = &answer->problems.list[i];
+	for (unsigned i = 0; i < answer.problems.count; i++) {
+		const struct problem *problem = &answer.problems.list[i];
 
 		report->problem(report->ctx, problem->error, problem->line, problem->column,
 		                problem->text);
 	}
-	if (answer)
-		problems_free(&answer->problems);
-	free(answer);
+	problems_free(&answer.problems);
 	free(child.out);
 }
 
@@ -115,15 +113,12 @@ static unsigned errors_of(const struct problems *problems)
 static bool is_better(const char *text, unsigned errors)
 {
 	static const char file[] = NAME;
-	struct problems *before = calloc(1, sizeof(*before));
+	struct problems before = {0};
 	struct rio *rio = NULL;
-	bool better = false;
+	bool better = draft_check(file, text, strlen(text), &before, &rio) != -ENOMEM &&
+	              errors_of(&before) < errors;
 
-	if (before && draft_check(file, text, strlen(text), before, &rio) != -ENOMEM)
-		better = errors_of(before) < errors;
-	if (before)
-		problems_free(before);
-	free(before);
+	problems_free(&before);
 	rio_free(rio);
 	return better;
 }
@@ -131,21 +126,19 @@ static bool is_better(const char *text, unsigned errors)
 static void check(struct job *job, const struct rio *edited, const struct body *body)
 {
 	bool checks = strcmp(body_string(body, "do"), "check") == 0;
-	struct problems *problems = calloc(1, sizeof(*problems));
+	struct problems problems = {0};
 	struct rio *rio = NULL;
-	int err = problems ? draft_check(NAME, edited->text, edited->len, problems, &rio) : -ENOMEM;
+	int err = draft_check(NAME, edited->text, edited->len, &problems, &rio);
 
 	if (err == -ENOMEM || !rio)
 		job_error(job, 500, "no memory");
 	else if (rio->len > DRAFT_MAX)
 		job_error(job, 422, "the text would be longer than 1 MiB");
-	else if (err && !checks && is_better(body_string(body, "text"), errors_of(problems)))
-		draft_refuse(job, problems, rio);
+	else if (err && !checks && is_better(body_string(body, "text"), errors_of(&problems)))
+		draft_refuse(job, &problems, rio);
 	else
-		draft_answer(job, rio, err, problems);
-	if (problems)
-		problems_free(problems);
-	free(problems);
+		draft_answer(job, rio, err, &problems);
+	problems_free(&problems);
 	rio_free(rio);
 }
 
@@ -176,8 +169,8 @@ static void edit(struct job *job, struct rio **rio, const struct body *body,
 
 static void draft_run(struct job *job)
 {
-	struct problems *problems = calloc(1, sizeof(*problems));
-	struct config_report report = problems_report(problems);
+	struct problems problems = {0};
+	struct config_report report = problems_report(&problems);
 	struct rio *rio = NULL;
 	struct body body;
 	const char *text;
@@ -189,14 +182,12 @@ static void draft_run(struct job *job)
 		text = body_string(&body, "text");
 		if (strlen(text) > DRAFT_MAX)
 			job_error(job, 413, "the text is longer than 1 MiB");
-		else if (!problems || rio_parse(NAME, text, strlen(text), &report, &rio))
+		else if (rio_parse(NAME, text, strlen(text), &report, &rio))
 			job_error(job, 500, "no memory");
 		else
 			edit(job, &rio, &body, &report);
 	}
-	if (problems)
-		problems_free(problems);
-	free(problems);
+	problems_free(&problems);
 	rio_free(rio);
 }
 

@@ -77,13 +77,13 @@ static void answer_with(struct save *save, const struct writer_answer *answer, c
 
 static void save_ask(struct save *save, const struct writer_order *order)
 {
-	struct writer_answer *answer = calloc(1, sizeof(*answer));
+	struct writer_answer answer;
 	char words[WRITER_WORDS], error[ERROR_WORDS];
-	int err = answer ? writer_ask(order, answer) : -ENOMEM;
+	int err = writer_ask(order, &answer);
 
 	if (!err) {
-		answer_with(save, answer, order->text);
-		problems_free(&answer->problems);
+		answer_with(save, &answer, order->text);
+		problems_free(&answer.problems);
 	} else if (err == -ENOENT || err == -ECONNREFUSED) {
 		writer_remedy(save->job.instance, words);
 		job_error(&save->job, 503, "%s", words);
@@ -104,7 +104,6 @@ static void save_ask(struct save *save, const struct writer_order *order)
 	} else {
 		job_error(&save->job, 503, "owsd-writer: %s", error_words(err, error));
 	}
-	free(answer);
 }
 
 /*

@@ -80,17 +80,15 @@ static void stored_answer(struct stored *stored, const char *text, size_t len,
 static void stored_run(struct job *job)
 {
 	struct stored *stored = (struct stored *)job;
-	struct problems *problems = calloc(1, sizeof(*problems));
-	struct config_report report = problems_report(problems);
+	struct problems problems = {0};
+	struct config_report report = problems_report(&problems);
 	struct rio *rio = NULL;
 	char *text = NULL;
 	size_t len;
 	int line;
 
-	if (!problems)
-		job_error(job, 500, "no memory");
-	else if (rio_read(stored->file, &report, &text, &len))
-		job_error(job, 500, "%s: %s", stored->file, problems_first(problems, &line));
+	if (rio_read(stored->file, &report, &text, &len))
+		job_error(job, 500, "%s: %s", stored->file, problems_first(&problems, &line));
 	else if (len > DRAFT_MAX)
 		job_error(job, 500,
 		          "%s is longer than 1 MiB: edit it with owsctl config, or an editor",
@@ -101,9 +99,7 @@ static void stored_run(struct job *job)
 		judge(stored, text, len);
 		stored_answer(stored, text, len, rio);
 	}
-	if (problems)
-		problems_free(problems);
-	free(problems);
+	problems_free(&problems);
 	rio_free(rio);
 	free(text);
 }
