@@ -5,7 +5,7 @@
 
 #include "unity.h"
 
-#include "src/tool/owsctl/scan/merge.h"
+#include "src/tool/owsctl/scan/scan_merge.h"
 
 #define MOST 8
 
