@@ -3,7 +3,7 @@
 import {get} from "./api.js";
 import {el, put, table, wide} from "./dom.js";
 import {store} from "./store.js";
-import {clock, dateAndClock, span} from "./words.js";
+import {clock, dateAndClock, span, wordsOf} from "./words.js";
 
 let shown = false, facts, counters, lines, fault, search, last = null;
 
@@ -70,7 +70,7 @@ function draw() {
 	].filter(([, value]) => value !== null && value !== undefined);
 	facts.replaceChildren(...pairs.map(([key, value]) =>
 		el("div", {}, el("dt", {}, key), el("dd", {}, String(value)))));
-	const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
+	const words = wordsOf(search.value);
 	const rows = (stats.counters ?? []).filter(({name, target}) =>
 		words.every((word) => `${name} ${target ?? ""}`.toLowerCase().includes(word)))
 		.map(({name, target, value}) => [el("code", {}, name), target ?? "owsd", String(value)]);

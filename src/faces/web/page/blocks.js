@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The targets with their blocks Bus, the keys of the driver, and the blocks of owsd's programs.
-import {el, put} from "./dom.js";
+import {button, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {Field, Form, edits, setter} from "./form.js";
 import {problemsOf} from "./problems.js";
@@ -99,14 +99,14 @@ function busForm(target) {
 	const form = new Form(`bus${serial++}`, "bus", (values) =>
 		draft.edit(...edits(values, "bus-set", "bus-unset", {target})), {without: ["Target"]});
 	form.words = el("span", {class: "hint"});
-	form.remove = el("button", {type: "button", onclick: async () => {
+	form.remove = button("Remove these options", async () => {
 		try {
 			await draft.edit({do: "bus-remove", target});
 			put(fault, "");
 		} catch (error) {
 			put(fault, error.message);
 		}
-	}}, "Remove these options");
+	});
 	form.box = el("details", {class: "block"},
 		el("summary", {}, el("code", {}, target), form.words), form.node,
 		el("div", {class: "tools"}, form.remove));

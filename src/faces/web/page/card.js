@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The card of an alarm that stands: value, limit, since when, its last hour, what one can do.
 import {badge, paintBadge} from "./badge.js";
-import {el, put, svg} from "./dom.js";
+import {action, el, put, svg} from "./dom.js";
 import {actorOf, curveOf, isLost, limitOf, overWords} from "./happened.js";
-import {continued, pastOf} from "./series.js";
+import {continued, emptyPast, pastOf} from "./series.js";
 import {store} from "./store.js";
 import {alarmOf, moment, msOf, qualityWords, span, valueText} from "./words.js";
 
@@ -56,9 +56,8 @@ export class AlarmCard {
 		const {name, device, state, until} = this.#alarm;
 		if (device)
 			return [el("span", {class: "hint"}, "Ends with its cause")];
-		const button = (action, text, act, look) => el("button", {type: "button", class: look,
-			disabled: !store.info?.writable, "data-action": `${action} ${name}`,
-			"aria-label": `${text} ${name}`, onclick: act}, text);
+		const button = (what, text, act, look) => action(text, act, `${what} ${name}`, {class: look,
+			disabled: !store.info?.writable, "aria-label": `${text} ${name}`});
 		if (state === "shelved" || until)
 			return [button("unshelve", "Unshelve", () => this.#acts.send(name, "unshelve"))];
 		return [button("shelve", "Shelve\u2026", () => this.#acts.shelve(this.#alarm)),
@@ -103,7 +102,7 @@ export class AlarmCard {
 			try {
 				this.#past = await pastOf(signal, from, until, POINTS);
 			} catch {
-				this.#past ??= {name, x: [], min: [], max: [], last: [], code: [], gap: []};
+				this.#past ??= emptyPast(name);
 			}
 		}
 		if (!this.#past)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Commands an output: a switch or a button in its row, and a dialog that asks before each command.
 import {post} from "./api.js";
-import {announce, el, put} from "./dom.js";
+import {announce, button, el, put} from "./dom.js";
 import {store} from "./store.js";
 import {valueText, withUnit} from "./words.js";
 
@@ -72,10 +72,8 @@ function switchOf(signal, send) {
 	const toggle = el("button", {type: "button", role: "switch", class: "switch",
 		"aria-label": signal.name, "aria-checked": "false",
 		onclick: () => set(toggle.getAttribute("aria-checked") !== "true")});
-	const off = el("button", {type: "button", "aria-label": `Set ${signal.name} off`,
-		onclick: () => set(false)}, "Set off");
-	const on = el("button", {type: "button", "aria-label": `Set ${signal.name} on`,
-		onclick: () => set(true)}, "Set on");
+	const [off, on] = ["off", "on"].map((text) => button(`Set ${text}`, () => set(text === "on"),
+		{"aria-label": `Set ${signal.name} ${text}`}));
 	return {nodes: [toggle, off, on], paint(value) {
 		const missed = value === null && !store.unknown && signal.code === DIFFERS
 			&& typeof signal.wanted === "boolean";
@@ -87,13 +85,11 @@ function switchOf(signal, send) {
 }
 
 function buttonOf(signal, send) {
-	const button = el("button", {type: "button", "aria-label": `Set ${signal.name}`,
-		onclick: async () => {
-			const value = await entered(signal);
-			if (value !== null)
-				send(value);
-		}}, "Set\u2026");
-	return {nodes: [button], paint() {}};
+	return {nodes: [button("Set\u2026", async () => {
+		const value = await entered(signal);
+		if (value !== null)
+			send(value);
+	}, {"aria-label": `Set ${signal.name}`})], paint() {}};
 }
 
 // --- The dialog -----------------------------------------------------------------------------
@@ -106,7 +102,7 @@ export function ask(title, accept, nodes, ready = () => true) {
 	const yes = el("button", {type: "submit", class: "primary", value: "yes"}, accept);
 	const form = el("form", {method: "dialog"}, el("h2", {id: "command-title"}, title), ...nodes,
 		el("div", {class: "buttons"},
-			el("button", {type: "button", onclick: () => box.close("no")}, "Cancel"), yes));
+			button("Cancel", () => box.close("no")), yes));
 	form.addEventListener("submit", async (event) => {
 		event.preventDefault();
 		if (await ready() && form.isConnected)

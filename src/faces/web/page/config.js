@@ -2,7 +2,7 @@
 // The view Configuration: its parts, the state of the draft, undo, import and export.
 import * as blocks from "./blocks.js";
 import {ask} from "./command.js";
-import {able, announce, el, put} from "./dom.js";
+import {able, action, attempt, button, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import * as found from "./found.js";
 import * as items from "./items.js";
@@ -11,6 +11,7 @@ import * as saving from "./save.js";
 import {save as download} from "./series.js";
 import {store} from "./store.js";
 import * as text from "./text.js";
+import {plural} from "./words.js";
 
 const MOST = 1 << 20; // bytes of a text that owsd-web takes
 
@@ -30,22 +31,20 @@ export function build(root) {
 	taken = el("p", {class: "note", id: "draft-taken", hidden: true});
 	input = el("input", {type: "file", accept: ".rio,text/plain", class: "unseen", tabindex: -1,
 		"aria-label": "File to import", onchange: take});
-	const button = (words, act, action) => el("button", {type: "button", onclick: act,
-		"data-action": action}, words);
 	buttons = {
-		undo: button("Undo", () => step("undo"), "undo"),
-		redo: button("Redo", () => step("redo"), "redo"),
-		empty: button("New", anew, "new"),
-		take: button("Import\u2026", () => input.click(), "import"),
-		give: button("Export", give, "export"),
-		drop: button("Discard draft\u2026", discard, "discard"),
+		undo: action("Undo", () => step("undo"), "undo"),
+		redo: action("Redo", () => step("redo"), "redo"),
+		empty: action("New", anew, "new"),
+		take: action("Import\u2026", () => input.click(), "import"),
+		give: action("Export", give, "export"),
+		drop: action("Discard draft\u2026", discard, "discard"),
 	};
 	const list = el("div", {class: "tabs", role: "tablist", "aria-label": "Parts of the dialog",
 		onkeydown: keys});
 	body = el("div", {});
 	for (const [name, title, view] of PARTS) {
-		const tab = el("button", {type: "button", role: "tab", id: `tab-${name}`,
-			"aria-controls": `part-${name}`, onclick: () => open({part: name})}, title);
+		const tab = button(title, () => open({part: name}), {role: "tab", id: `tab-${name}`,
+			"aria-controls": `part-${name}`});
 		const panel = el("div", {role: "tabpanel", id: `part-${name}`, class: "part",
 			"aria-labelledby": `tab-${name}`});
 		tabs.set(name, tab);
@@ -140,7 +139,7 @@ function paint() {
 	put(why, info.configurable ? "" : `You can look at the configuration, not change it. `
 		+ `${info.why ?? ""}`);
 	taken.hidden ||= !draft.dirty;
-	put(state, draft.dirty ? `Draft with ${draft.changes} change${draft.changes === 1 ? "" : "s"}, `
+	put(state, draft.dirty ? `Draft with ${plural(draft.changes, "change")}, `
 		+ `not saved; ${countWords()}` : `As on disk; ${countWords()}`);
 	draft.restored &&= draft.dirty;
 	notice.hidden = !draft.restored && !(draft.overtaken && draft.dirty);
@@ -159,23 +158,13 @@ function paint() {
 
 // --- The whole draft ------------------------------------------------------------------------
 
-async function attempt(call, words) {
-	try {
-		await call();
-		put(fault, "");
-		announce(words());
-	} catch (error) {
-		put(fault, error.message);
-	}
-}
-
-const step = (what) => attempt(() => draft[what](),
+const step = (what) => attempt(fault, () => draft[what](),
 	() => `${what === "undo" ? "Undone" : "Done again"}: ${countWords()}.`);
 
 async function anew() {
 	if (!draft.dirty || await ask("Begin with an empty configuration?", "Begin anew",
 		[el("p", {}, "The draft is replaced. Undo brings it back, and the file stays as it is.")]))
-		attempt(() => begin({do: "new"}), () => "The draft is an empty configuration. "
+		attempt(fault, () => begin({do: "new"}), () => "The draft is an empty configuration. "
 			+ taken.textContent);
 }
 
@@ -192,7 +181,7 @@ async function begin(step) {
 async function discard() {
 	if (await ask("Discard the draft?", "Discard", [el("p", {}, "The draft becomes what the file "
 		+ "on disk has. Undo brings your changes back as long as the page is open.")]))
-		attempt(() => draft.drop(), () => "The draft is what the file has.");
+		attempt(fault, () => draft.drop(), () => "The draft is what the file has.");
 }
 
 function give() {
@@ -204,7 +193,7 @@ function take() {
 	const [chosen] = input.files;
 	if (!chosen)
 		return;
-	attempt(async () => {
+	attempt(fault, async () => {
 		if (chosen.size > MOST)
 			throw new Error(`${chosen.name} has more than 1 MiB.`);
 		let text;

@@ -6,6 +6,14 @@ export function el(name, attributes = {}, ...children) {
 	return fill(document.createElement(name), attributes, children);
 }
 
+/** A button, with more attributes. */
+export const button = (text, onclick, more = {}) =>
+	el("button", {type: "button", onclick, ...more}, text);
+
+/** The same with a name for what it does. */
+export const action = (text, onclick, name, more = {}) =>
+	button(text, onclick, {"data-action": name, ...more});
+
 const SVG = "http://www.w3.org/2000/svg";
 
 export function svg(name, attributes = {}, ...children) {
@@ -74,6 +82,17 @@ export function able(button, yes, next) {
 	if (!yes && document.activeElement === button)
 		next.focus();
 	button.disabled = !yes;
+}
+
+/** Do it, and announce words(what it returns); what is refused stands in the fault. */
+export async function attempt(fault, call, words) {
+	try {
+		const done = await call();
+		put(fault, "");
+		announce(words(done));
+	} catch (error) {
+		put(fault, error.message);
+	}
 }
 
 /** The live region: few words, and only what the user waits for or must know. */

@@ -3,6 +3,7 @@
 // its help, its default and what the checker reports about it.
 import {announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
+import {plural} from "./words.js";
 
 const TYPES = ["bool", "byte", "short", "long", "word", "dword", "large", "float", "double",
 	"string"];
@@ -210,7 +211,7 @@ export class Form {
 			return;
 		this.more.open ||= wrong > 0;
 		put(this.count, `${this.behind} keys${set.length ? `, ${set.length} set: ${set.join(", ")}` : ""}`
-			+ `${wrong ? `, \u00d7 ${wrong} problem${wrong > 1 ? "s" : ""}` : ""}`);
+			+ `${wrong ? `, \u00d7 ${plural(wrong, "problem")}` : ""}`);
 	}
 
 	/** Put the focus into the field of a key. */

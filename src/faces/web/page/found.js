@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The scan: what is found is listed, ticked, named and added; what is missing is replaced.
 import {get} from "./api.js";
-import {announce, el, put} from "./dom.js";
+import {action, announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import * as missing from "./missing.js";
 import {Watch, readingOf} from "./moving.js";
 import {faultOf, idOf, nameFor} from "./names.js";
+import {plural} from "./words.js";
 
 const SCAN_MS = 120000; // scans of several persons follow each other
 
@@ -17,12 +18,10 @@ const itemsOf = (device) =>
 	draft.model.items.filter((item) => item.device && idOf(item.device) === idOf(device.id));
 
 export function build(root) {
-	const button = (text, act, action, more = {}) => el("button", {type: "button", onclick: act,
-		"data-action": action, ...more}, text);
 	buttons = {
-		scan: button("Scan the wires", scan, "scan", {class: "primary"}),
-		watch: button("Watch the readings", toggle, "watch", {"aria-pressed": "false"}),
-		add: button("Add to the draft", add, "add-found", {class: "primary"}),
+		scan: action("Scan the wires", scan, "scan", {class: "primary"}),
+		watch: action("Watch the readings", toggle, "watch", {"aria-pressed": "false"}),
+		add: action("Add to the draft", add, "add-found", {class: "primary"}),
 	};
 	only = el("input", {type: "checkbox", id: "only-new", onchange: paint});
 	count = el("p", {class: "count"});
@@ -53,7 +52,7 @@ async function scan() {
 		list.replaceChildren(...rows.map(({node}) => node));
 		scanned = true;
 		put(fault, whole === false ? "Not all was read in time: scan again." : "");
-		announce(`${devices.length} device${devices.length === 1 ? "" : "s"} found.`);
+		announce(`${plural(devices.length, "device")} found.`);
 	} catch (error) {
 		put(fault, `The wires cannot be scanned: ${error.message}.`);
 	}
@@ -172,14 +171,14 @@ export function paint() {
 	rows.forEach(paintDevice);
 	const shown = rows.filter((row) => !row.node.hidden).length;
 	if (!scanning)
-		put(count, scanned ? `${shown < rows.length ? `${shown} of ` : ""}${rows.length} device`
-			+ `${rows.length === 1 ? "" : "s"}` : "");
+		put(count, scanned ? `${shown < rows.length ? `${shown} of ` : ""}`
+			+ plural(rows.length, "device") : "");
 	note.hidden = scanned;
 	buttons.scan.disabled = scanning || !draft.editable;
 	put(buttons.scan, scanned ? "Scan again" : "Scan the wires");
 	buttons.watch.disabled = !draft.editable || !rows.some((row) => readingOf(row.device));
 	bar.hidden = !ticks.size;
-	put(buttons.add, `Add ${ticks.size} signal${ticks.size === 1 ? "" : "s"} to the draft`);
+	put(buttons.add, `Add ${plural(ticks.size, "signal")} to the draft`);
 	buttons.add.disabled = !draft.editable
 		|| [...ticks.values()].some((one) => faultOf(one.name, taken(one)));
 	missing.paint(scanned ? rows.map((row) => row.device) : null);
@@ -227,7 +226,7 @@ async function add() {
 		await draft.edit(...wanted.map(({name, device, property}) => ({do: "add", name,
 			path: `${device.path}/${property.name}`, keys: keysOf(property)})));
 		put(fault, "");
-		announce(`${wanted.length} signal${wanted.length === 1 ? "" : "s"} added to the draft.`);
+		announce(`${plural(wanted.length, "signal")} added to the draft.`);
 		buttons.scan.focus();
 	} catch (error) {
 		put(fault, `Nothing is added: ${error.message}`);

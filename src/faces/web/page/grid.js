@@ -2,7 +2,7 @@
 // The grid of the items: a row for each, cells that are edited in place. Arrows move, Enter edits,
 // Esc leaves, Space chooses, Ctrl+Z takes back. The order of the rows is that of the file, or sorted.
 import {NOW, columns, originals, sorted, stepTo, textOf} from "./cells.js";
-import {announce, el, put} from "./dom.js";
+import {announce, button, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {controlOf, shownOf, valueOf} from "./form.js";
 import {GridRow} from "./gridrow.js";
@@ -117,8 +117,7 @@ export class Grid {
 			this.#rows = [];
 			this.#order = [];
 			this.heads = this.columns.map(({key, title}) => el("div", {role: "columnheader",
-				class: `c-${key}`, "data-key": key}, el("button", {type: "button",
-				onclick: () => this.#sortBy(key)}, title)));
+				class: `c-${key}`, "data-key": key}, button(title, () => this.#sortBy(key))));
 			this.head.replaceChildren(el("div", {role: "columnheader", class: "c-choose"}, this.all),
 				...this.heads);
 		}

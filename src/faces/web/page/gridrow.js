@@ -3,7 +3,7 @@
 import {NOW, before, textOf} from "./cells.js";
 import {el, put} from "./dom.js";
 import {store} from "./store.js";
-import {qualityWords, stateOf, valueText, withUnit} from "./words.js";
+import {plural, qualityWords, stateOf, valueText, withUnit} from "./words.js";
 
 export class GridRow {
 	/** choose(row): its box was ticked, or not any more. */
@@ -26,7 +26,7 @@ export class GridRow {
 			...Object.values(item.keys), problems.length ? "problem" : ""].join(" ").toLowerCase();
 		this.choose(chosen);
 		this.mark.hidden = !problems.length;
-		put(this.mark, `\u00d7 ${problems.length} problem${problems.length === 1 ? "" : "s"}`);
+		put(this.mark, `\u00d7 ${plural(problems.length, "problem")}`);
 		for (const cell of this.cells)
 			if (cell !== but && cell.dataset.key !== NOW)
 				this.#paintCell(cell, problems.filter((one) => one.key === cell.dataset.key));

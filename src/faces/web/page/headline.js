@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The first line of the view Live: how many signals need somebody, and each of them with its reason.
 import {badge} from "./badge.js";
-import {announce, el, put} from "./dom.js";
+import {announce, button, el, put} from "./dom.js";
 import {needsOf, sentenceOf} from "./look.js";
 import {store} from "./store.js";
 
@@ -63,8 +63,8 @@ export class Headline {
 				this.open(name);
 			}}, name);
 		const all = names.flatMap((name, n) => [n ? ", " : "", link(name)]);
-		const rest = more ? [names.length ? " and " : "", el("button", {type: "button", class: "link",
-			onclick: this.more}, names.length ? `${more} more` : String(more))] : [];
+		const rest = more ? [names.length ? " and " : "", button(names.length ? `${more} more`
+			: String(more), this.more, {class: "link"})] : [];
 		return el("li", {class: `need edge-${look.edge} is-washed`}, mark,
 			el("span", {}, el("b", {}, ...all, ...rest), ` ${words}`));
 	}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The items of the draft: the grid of all, what is done with the chosen ones, the form of one.
-import {announce, el, later, put} from "./dom.js";
+import {action, announce, el, later, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {FIRST, Form, MORE, OUTPUT, setter} from "./form.js";
 import {Grid} from "./grid.js";
@@ -8,7 +8,7 @@ import {problemsOf} from "./problems.js";
 import {Special} from "./special.js";
 import * as several from "./several.js";
 import {store} from "./store.js";
-import {qualityWords, valueText, withUnit} from "./words.js";
+import {plural, qualityWords, valueText, withUnit, wordsOf} from "./words.js";
 
 const state = {query: "", group: null, selected: null, at: -1, of: 0}; // selected: at of so many
 let search, groups, count, grid, view, editor, empty, form = null, head, place, value, double, also;
@@ -27,16 +27,14 @@ export function build(root) {
 		grid.also = also.value;
 		paint();
 	}});
-	const button = (text, act, action) => el("button", {type: "button", onclick: act,
-		"data-action": action}, text);
 	buttons = {
-		set: button("Set a key\u2026", () => attempt(several.setKey), "set-key"),
-		copy: button("Duplicate", () => attempt(several.duplicate), "duplicate"),
-		remove: button("Remove\u2026", () => attempt(several.remove), "remove"),
-		add: button("Add an item\u2026", () => attempt(several.add), "add"),
-		up: button("Move up", () => move(state.selected, -1), "up"),
-		down: button("Move down", () => move(state.selected, 1), "down"),
-		back: button("\u2190 All items", back, "back"),
+		set: action("Set a key\u2026", () => attempt(several.setKey), "set-key"),
+		copy: action("Duplicate", () => attempt(several.duplicate), "duplicate"),
+		remove: action("Remove\u2026", () => attempt(several.remove), "remove"),
+		add: action("Add an item\u2026", () => attempt(several.add), "add"),
+		up: action("Move up", () => move(state.selected, -1), "up"),
+		down: action("Move down", () => move(state.selected, 1), "down"),
+		back: action("\u2190 All items", back, "back"),
 	};
 	grid = new Grid({edit: (name, values) => apply(name, values), select, open: (name) => {
 		select(name);
@@ -107,13 +105,12 @@ export function paint() {
 // --- The grid -------------------------------------------------------------------------------
 
 function filter() {
-	const words = state.query.toLowerCase().split(/\s+/).filter(Boolean), {items} = draft.model;
+	const words = wordsOf(state.query), {items} = draft.model;
 	grid.keep = (item, {text}) => words.every((word) => text.includes(word))
 		&& (state.group === null || (item.keys.Group ?? "") === state.group);
 	grid.paint();
 	const shown = grid.shown.length;
-	put(count, `${shown < items.length ? `${shown} of ` : ""}${items.length} item`
-		+ `${items.length === 1 ? "" : "s"}`);
+	put(count, `${shown < items.length ? `${shown} of ` : ""}${plural(items.length, "item")}`);
 	paintTools();
 }
 

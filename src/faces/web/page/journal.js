@@ -2,10 +2,12 @@
 // What happened, a part of the view Alarms: search, kinds, a day, how much in each hour.
 import {get} from "./api.js";
 import {badge} from "./badge.js";
-import {el, put, table} from "./dom.js";
+import {button, el, put, table} from "./dom.js";
 import {happenings, hoursOf, isLost, joined, matches} from "./happened.js";
 import {store} from "./store.js";
-import {alarmOf, clock, dateAndClock, dayText, moment, msOf, span, valueText, withUnit} from "./words.js";
+import {midnight} from "./when.js";
+import {alarmOf, clock, dateAndClock, dayText, moment, msOf, span, valueText, withUnit,
+	wordsOf} from "./words.js";
 
 const DAY_MS = 86400000, DAYS = 7, ENTRIES = 1000, PAGE = 50;
 const KINDS = [["", "All"], ["alarms", "Alarms"], ["commands", "Commands"]];
@@ -13,8 +15,6 @@ const COLUMNS = [["Time", "time"], "Signal", "What", ["Value", "right"], ["Laste
 
 const state = {words: [], kind: "", day: null, hour: null, pages: 1};
 let kinds, day, hours, lines, foot, all = [], raw = [], cut = false, standing = new Set();
-
-const midnight = (time) => new Date(time).setHours(0, 0, 0, 0);
 
 /** The alarm that was raised last. */
 export const last = () => all.find(({what}) => what === "raised");
@@ -27,9 +27,9 @@ function change(values) {
 export function build(root) {
 	const search = el("input", {type: "search", id: "journal-search", autocomplete: "off",
 		placeholder: "Name, person, words", "aria-label": "Search what happened",
-		oninput: () => change({words: search.value.toLowerCase().split(/\s+/).filter(Boolean)})});
-	kinds = KINDS.map(([value, text]) => el("button", {type: "button", class: "chip",
-		"aria-pressed": "false", "data-kind": value, onclick: () => change({kind: value})}, text));
+		oninput: () => change({words: wordsOf(search.value)})});
+	kinds = KINDS.map(([value, text]) => button(text, () => change({kind: value}), {class: "chip",
+		"aria-pressed": "false", "data-kind": value}));
 	day = el("select", {id: "day", "aria-label": "Day",
 		onchange: () => choose(Number(day.value))});
 	hours = el("div", {class: "hours", role: "group", "aria-label": "How much in each hour"});
@@ -150,13 +150,11 @@ function paintLines(wanted) {
 	lines.replaceChildren(made);
 	const left = wanted.length - some.length, from = state.day;
 	const focused = foot.contains(document.activeElement);
-	foot.replaceChildren(left ? el("button", {type: "button",
-		onclick: () => change({pages: state.pages + 1})}, `Older, ${left} more`)
+	foot.replaceChildren(left
+		? button(`Older, ${left} more`, () => change({pages: state.pages + 1}))
 		: "Each line is a whole happening: raised and returned are one.",
-	cut && msOf(raw.at(-1).time) >= from ? el("button", {type: "button",
-		onclick: () => choose(state.day)},
-		`Fetch all of this day, here is what came after ${moment(raw.at(-1).time, store.now())}`)
-		: "");
+	cut && msOf(raw.at(-1).time) >= from ? button("Fetch all of this day, here is what came after "
+		+ moment(raw.at(-1).time, store.now()), () => choose(state.day)) : "");
 	if (focused)
 		foot.querySelector("button")?.focus();
 }

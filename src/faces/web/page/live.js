@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The view Live: what needs somebody, the tiles, and all signals in groups or as a list.
 import {Chips, NO_CHOICE} from "./chips.js";
-import {el, later, put} from "./dom.js";
+import {button, el, later, put} from "./dom.js";
 import {Headline} from "./headline.js";
 import {COLUMNS, columnsOf, groupsOf, passes, readAddress, showOf, sorted, toggled,
 	writeAddress} from "./order.js";
@@ -11,7 +11,7 @@ import {scaleOf} from "./scale.js";
 import {groupCard, table} from "./sheets.js";
 import {store} from "./store.js";
 import {Tiles, firstOf} from "./tiles.js";
-import {clock} from "./words.js";
+import {clock, wordsOf} from "./words.js";
 import {Where, limitsOf} from "./where.js";
 
 const SHOWS = [["groups", "Groups"], ["list", "List"], ["wall", "Wall"]];
@@ -55,8 +55,7 @@ export function build(root) {
 		change({order: orderOf.value})}, ...[["", "as in the file"], ...COLUMNS].map(([value, text]) =>
 		el("option", {value: value === "value" ? "-value" : value}, `Order: ${text.toLowerCase()}`)));
 	toggle = el("div", {class: "shows", role: "group", "aria-label": "Show"},
-		...SHOWS.map(([value, text]) => el("button", {type: "button", value,
-			onclick: () => change({show: value})}, text)));
+		...SHOWS.map(([value, text]) => button(text, () => change({show: value}), {value})));
 	place = el("div", {class: "place"});
 	time = el("span", {class: "time"});
 	empty = el("p", {class: "empty sheet", hidden: true});
@@ -179,7 +178,7 @@ function arrange() {
 const names = () => mode() === "list" ? sorted(rows, orderNow()).map(({signal}) => signal.i).join() : "";
 
 function filter() {
-	const words = state.q.toLowerCase().split(/\s+/).filter(Boolean);
+	const words = wordsOf(state.q);
 	for (const row of rows)
 		row.hidden = words.length > 0 && !row.matches(words) || !passes(row, state);
 	for (const body of bodies)
@@ -191,8 +190,8 @@ function filter() {
 	empty.hidden = !none;
 	place.hidden = none;
 	if (none)
-		empty.replaceChildren(`No signal ${wanted}. `, el("button", {type: "button", class: "link",
-			onclick: clear}, `Show all ${rows.length}.`));
+		empty.replaceChildren(`No signal ${wanted}. `, button(`Show all ${rows.length}.`, clear,
+			{class: "link"}));
 	tiles.set(tileNames());
 	summary();
 }

@@ -2,12 +2,12 @@
 // What a save would take away: signals, and the editing by this page.
 import {identityOf} from "./cells.js";
 import {draft} from "./draft.js";
+import {listOf} from "./words.js";
 
 const NAMED = 20;
 const DOORS = ["Listen", "Hosts", "Proxy"]; // keys of Web that say how the page is reached
 
-const list = (words, of) => (of.length ? `${words}: ${of.slice(0, NAMED).join(", ")}`
-	+ `${of.length > NAMED ? ` and ${of.length - NAMED} more` : ""}.` : "");
+const list = (words, of) => of.length ? `${words}: ${listOf(of, NAMED)}.` : "";
 
 /** What a save does to signals of the file and to their history, in words; "": nothing. */
 export function vanished() {

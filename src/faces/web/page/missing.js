@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Devices that the draft names and the scan has not found: another of their family takes over.
 import {ask} from "./command.js";
-import {announce, el, put} from "./dom.js";
+import {action, attempt, el} from "./dom.js";
 import {draft} from "./draft.js";
 import {readingOf} from "./moving.js";
 import {idOf} from "./names.js";
@@ -45,10 +45,9 @@ function row(id, items, free) {
 	const choice = el("select", {id: `replace-${idOf(id)}`, disabled: !draft.editable},
 		...free.map((device) => el("option", {value: device.id}, [device.id, device.alias,
 			readingOf(device)?.value].filter(Boolean).join(", "))));
-	const button = el("button", {type: "button", "data-action": `replace ${id}`,
-		disabled: !draft.editable, onclick: () => replace(id,
-			free.find((device) => device.id === choice.value), names)},
-	"Replace\u2026");
+	const button = action("Replace\u2026", () => replace(id,
+		free.find((device) => device.id === choice.value), names), `replace ${id}`,
+	{disabled: !draft.editable});
 	return el("li", {"data-id": id}, el("p", {class: "title"}, el("span", {class: "shape",
 		"aria-hidden": "true"}, "\u00d7"), " ", el("b", {}, kindOf(items[0])), " ",
 	el("code", {}, id)), el("p", {class: "hint"}, `Signals: ${names}`),
@@ -62,11 +61,6 @@ async function replace(old, {id, bus}, names) {
 		+ `signals ${names}. They keep their names and settings, and their history goes on. Undo brings back what `
 		+ "was.")]))
 		return;
-	try {
-		await draft.edit({do: "replace", old, new: id, location: bus ?? ""});
-		put(fault, "");
-		announce(`${id} takes the place of ${old} in the draft.`);
-	} catch (error) {
-		put(fault, error.message);
-	}
+	await attempt(fault, () => draft.edit({do: "replace", old, new: id, location: bus ?? ""}),
+		() => `${id} takes the place of ${old} in the draft.`);
 }

@@ -77,15 +77,7 @@ export function words(pen, text, x, middle, colour, align) {
 
 /** A limit: a dashed line, with its name at the left. */
 export function limit(pen, left, right, y, text) {
-	pen.save();
-	pen.strokeStyle = css("--warn");
-	pen.lineWidth = 1.25;
-	pen.setLineDash([6, 3]);
-	pen.beginPath();
-	pen.moveTo(left, y);
-	pen.lineTo(right, y);
-	pen.stroke();
-	pen.restore();
+	dashed(pen, left, right, y, {stroke: css("--warn"), width: 1.25, dash: [6, 3]});
 	words(pen, text, left + 6, y - 9, "--warn", "left");
 }
 
@@ -135,18 +127,20 @@ export function hatched(pen, a, b, top, height, colour) {
 	pen.restore();
 }
 
-function dotted(pen, a, b, middle) {
-	if (b <= a)
-		return;
+function dashed(pen, a, b, y, {stroke, width, dash}) {
 	pen.save();
-	pen.strokeStyle = css("--ink-2");
-	pen.setLineDash([1, 4]);
+	pen.strokeStyle = stroke;
+	pen.lineWidth = width;
+	pen.setLineDash(dash);
 	pen.beginPath();
-	pen.moveTo(a, middle);
-	pen.lineTo(b, middle);
+	pen.moveTo(a, y);
+	pen.lineTo(b, y);
 	pen.stroke();
 	pen.restore();
 }
+
+const dotted = (pen, a, b, middle) => b > a
+	&& dashed(pen, a, b, middle, {stroke: css("--ink-2"), width: 1, dash: [1, 4]});
 
 /** Good: a bar in this colour. Not good: hatched. Nothing known: a dotted line. */
 export function quality(pen, past, x, [left, right], middle, colour) {

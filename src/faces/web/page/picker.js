@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The signals of a trend: found by a search, each with its figures at the cursor.
-import {announce, el, put} from "./dom.js";
+import {announce, button, el, put} from "./dom.js";
 import {extremes, heldAt, onPart} from "./series.js";
-import {UNKNOWN, qualityWords, stateOf, valueText} from "./words.js";
+import {UNKNOWN, qualityWords, stateOf, valueText, wordsOf} from "./words.js";
 
 const MOST = 10, OFTEN = 4;
 
@@ -12,7 +12,7 @@ export const searched = (signals) => signals.map((signal) => ({signal, text: [si
 
 /** The signals that have all words, those whose name begins with the first one before others. */
 export function found(texts, query, most = MOST) {
-	const words = query.toLowerCase().split(/\s+/).filter(Boolean);
+	const words = wordsOf(query);
 	const first = [], others = [];
 	let count = 0;
 	for (const {signal, text} of texts) {
@@ -67,8 +67,8 @@ export class Picker {
 				?? this.field).focus();
 		const more = often(all, picked.map(({signal}) => signal));
 		this.often.replaceChildren(...more.length && picked.length
-			? [el("h2", {}, "Often with these"), ...more.map(({name}) => el("button", {type: "button",
-				class: "chip", onclick: () => this.act.add(name)}, `+ ${name}`))] : []);
+			? [el("h2", {}, "Often with these"), ...more.map(({name}) => button(`+ ${name}`,
+				() => this.act.add(name), {class: "chip"}))] : []);
 	}
 
 	#row(signal, number) {
@@ -77,8 +77,8 @@ export class Picker {
 		return {signal, figure, range, node: el("li", {},
 			el("span", {class: kind, "aria-hidden": "true"}),
 			el("span", {class: "what"}, el("b", {class: "name"}, signal.name), range), figure,
-			el("button", {type: "button", class: "plain", "aria-label": `Remove ${signal.name}`,
-				onclick: () => this.act.remove(signal.name)}, "\u00d7"))};
+			button("\u00d7", () => this.act.remove(signal.name), {class: "plain",
+				"aria-label": `Remove ${signal.name}`}))};
 	}
 
 	/** Show what these pasts have at the time; null: now. at: that time in words. */

@@ -2,6 +2,7 @@
 // What the checker reports about the draft: where it belongs, and the list with links to it.
 import {el} from "./dom.js";
 import {draft} from "./draft.js";
+import {plural} from "./words.js";
 
 const SHOWN = 50;
 const OWN = ["ItemCount", "Version", "Files"]; // keys that have no field
@@ -32,8 +33,8 @@ export function problemsOf(where) {
 export function countWords() {
 	const errors = draft.problems.filter((one) => one.error).length;
 	const warnings = draft.problems.length - errors;
-	const count = (n, word) => n ? `${n} ${word}${n > 1 ? "s" : ""}` : "";
-	return [count(errors, "error"), count(warnings, "warning")].filter(Boolean).join(", ")
+	return [errors && plural(errors, "error"), warnings && plural(warnings, "warning")]
+		.filter(Boolean).join(", ")
 		|| "no problem";
 }
 

@@ -4,12 +4,12 @@
 import {isUnknown} from "./api.js";
 import {ask} from "./command.js";
 import {compare} from "./diff.js";
-import {able, announce, el, put} from "./dom.js";
+import {able, action, announce, el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {lockout, vanished} from "./loss.js";
 import {countWords, problemList} from "./problems.js";
 import {store} from "./store.js";
-import {dateAndClock} from "./words.js";
+import {dateAndClock, listOf, plural} from "./words.js";
 
 const WATCH_MS = 30000;
 const LINES = 1000; // of a difference that are shown
@@ -19,18 +19,16 @@ let problems, loss, lock, sum, heading, difference, theirs, conflict, fault, res
 let timer = 0, shown = false, clean = true, quiet = false;
 
 export function build(root) {
-	const button = (text, act, action, name) => el("button", {type: "button", onclick: act,
-		"data-action": action, class: name}, text);
 	buttons = {
-		save: button("Save and reload", save, "save", "primary"),
-		restore: button("Make it work again as before", restore, "restore"),
-		look: button("Show what was changed there", () => {
+		save: action("Save and reload", save, "save", {class: "primary"}),
+		restore: action("Make it work again as before", restore, "restore"),
+		look: action("Show what was changed there", () => {
 			theirs.hidden = !theirs.hidden;
 			buttons.look.setAttribute("aria-expanded", String(!theirs.hidden));
 			paint();
 		}, "theirs"),
-		drop: button("Take the file, drop my draft\u2026", drop, "drop"),
-		top: button("Put my changes on top", rebase, "rebase"),
+		drop: action("Take the file, drop my draft\u2026", drop, "drop"),
+		top: action("Put my changes on top", rebase, "rebase"),
 	};
 	buttons.look.setAttribute("aria-expanded", "false");
 	problems = el("div", {});
@@ -101,7 +99,7 @@ function differenceOf(before, after, none) {
 	let left = LINES;
 	const shownParts = parts.map((part) => part.slice(0, Math.max(0, left -= part.length)
 		? part.length : Math.max(0, left + part.length))).filter((part) => part.length);
-	return el("div", {}, el("p", {class: "count"}, `${added} line${added === 1 ? "" : "s"} added, `
+	return el("div", {}, el("p", {class: "count"}, `${plural(added, "line")} added, `
 		+ `${removed} removed.`), ...shownParts.map(hunk),
 	left < 0 ? el("p", {class: "hint"}, `And ${-left} lines more.`) : null);
 }
@@ -171,8 +169,7 @@ function watch(good) {
 			return;
 		}
 		const lost = good.filter((name) => store.find(name) && !store.find(name).good);
-		const names = lost.slice(0, NAMED).join(", ")
-			+ (lost.length > NAMED ? ` and ${lost.length - NAMED} more` : "");
+		const names = listOf(lost, NAMED);
 		const over = performance.now() > until;
 		if (over)
 			clearInterval(timer);
@@ -212,7 +209,7 @@ const rebase = () => choose(() => draft.rebase(), (clashes) => `${onTop(clashes)
 	: ` The draft has ${countWords()}: the list of problems has the places.`}`);
 
 const onTop = (clashes) => clashes.length
-	? `Your changes are on top. At ${clashes.length} place${clashes.length > 1 ? "s" : ""} both had `
+	? `Your changes are on top. At ${plural(clashes.length, "place")} both had `
 		+ "changed the same lines, and the draft has yours there: look at the difference before you "
 		+ "save." : "Your changes are on top of the other file. Look at the difference, and save.";
 

@@ -8,13 +8,16 @@ const UNWRITTEN_MS = 660000; // at most: the longest Flush, and a little
 
 export const goodCode = (code) => code !== UNKNOWN && stateOf(code) === "good";
 
+export const emptyPast = (name) =>
+	({name, x: [], min: [], max: [], last: [], code: [], gap: []});
+
 /**
  * The past of a signal as {name, x, min, max, last, code, gap}: arrays of one length. x is when a
  * column begins, ms; each holds until the next. The code of a column of which nothing is known is
  * UNKNOWN. min, max, last are null where there is no good value.
  */
 export async function pastOf(signal, from, until, points) {
-	const past = {name: signal.name, x: [], min: [], max: [], last: [], code: [], gap: []};
+	const past = emptyPast(signal.name);
 	if (!store.info?.history || signal.type === "string")
 		return past;
 	try {

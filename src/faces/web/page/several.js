@@ -6,12 +6,12 @@ import {ask} from "./command.js";
 import {el, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {controlOf, edits, hintOf, shownOf, valueOf} from "./form.js";
+import {listOf} from "./words.js";
 
 const OWN = ["Name", "Identity"]; // what two items cannot share
 const NAMED = 5;
 
-const namesOf = (items) => items.slice(0, NAMED).map(({name}) => name).join(", ")
-	+ (items.length > NAMED ? ` and ${items.length - NAMED} more` : "");
+const namesOf = (items) => listOf(items.map(({name}) => name), NAMED);
 
 /* What a filter hides is changed, too. */
 const hiddenOf = ({length}, hidden) => !hidden ? ""

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tables of the view Live: one for each group, or one list whose heads put it in order.
-import {el} from "./dom.js";
+import {button, el} from "./dom.js";
 import {COLUMNS} from "./order.js";
 import {shared} from "./row.js";
 import {chunked, reserve} from "./rows.js";
@@ -13,9 +13,8 @@ function sorter([name, text], {order, unit, choose}) {
 	const mine = order.replace(/^-/, "") === name, down = order.startsWith("-");
 	const words = name === "value" && unit ? `${text}, ${unit}` : text;
 	const next = mine ? down ? name : `-${name}` : name === "value" ? "-value" : name;
-	return cell(name === "hour" ? "spark" : name, el("button", {type: "button",
-		onclick: () => choose(next)}, `${words}${mine ? down ? " \u25be" : " \u25b4" : ""}`),
-	mine ? down ? "descending" : "ascending" : "none");
+	return cell(name === "hour" ? "spark" : name, button(`${words}${mine ? down ? " \u25be"
+		: " \u25b4" : ""}`, () => choose(next)), mine ? down ? "descending" : "ascending" : "none");
 }
 
 function headsOf(list) {

@@ -3,8 +3,7 @@
 // adapter, with its chips as nodes.
 import {el, table} from "./dom.js";
 import {store} from "./store.js";
-import {plural} from "./terminals.js";
-import {SHAPES, qualityWords, stateOf, valueText, withUnit} from "./words.js";
+import {SHAPES, listOf, plural, qualityWords, stateOf, valueText, withUnit} from "./words.js";
 
 const CHIPS = 12; // of a terminal that are shown
 const TERMINALS = 16; // as strips; more are a table
@@ -43,16 +42,10 @@ const loadOf = ({load, name}) => load === null ? null : percent(load, `Load of $
 const errorsOf = ({errors}) => errors ? plural(errors, "error") : "no error";
 const shortWords = `${SHAPES.bad} short`;
 
-/** The signals of chips as text: the first of each, and how many more. */
-function namesOf(list, count, name) {
-	const more = list.length - count;
-	return list.slice(0, count).map(name).join(", ") + (more > 0 ? ` and ${more} more` : "");
-}
-
-export const chipNames = ({signals}) => namesOf(signals, NAMES, ({name}) => name);
+export const chipNames = ({signals}) => listOf(signals.map(({name}) => name), NAMES);
 
 const valuesOf = ({signals, code}) => stateOf(code) !== "good" ? qualityWords(code)
-	: namesOf(signals, NAMES, (one) => withUnit(one, valueText(one, store.value(one))));
+	: listOf(signals.map((one) => withUnit(one, valueText(one, store.value(one)))), NAMES);
 
 const node = (chip) => el("li", {class: `node is-${stateOf(chip.code)}`},
 	el("a", {href: `#live?q=${encodeURIComponent(chip.id)}`}, chipNames(chip)),
@@ -96,7 +89,7 @@ function tableOf(terminals, chosen) {
 			one.adapter ?? "not known", one.short ? shortWords : one.chips.length
 				? `${one.chips.filter((chip) => chip.answers).length} of ${one.chips.length} answer`
 				: "empty", loadOf(one) ?? "\u2014", String(one.errors),
-			namesOf(one.chips, CHIPS, chipNames)]), "owsd has no target."),
+			listOf(one.chips.map(chipNames), CHIPS)]), "owsd has no target."),
 	...(more > 0 ? [el("p", {}, `and ${more} more`)] : [])];
 }
 

@@ -2,7 +2,7 @@
 // Tells of an alarm by a notification or a sound, if the user says so: while the page is open, in
 // this browser alone. A page that is hidden has no stream of events; it asks now and then.
 import {get} from "./api.js";
-import {el, later, put} from "./dom.js";
+import {button, el, later, put} from "./dom.js";
 import {waiting} from "./head.js";
 import {store} from "./store.js";
 import {alarmOf} from "./words.js";
@@ -108,7 +108,7 @@ function paint() {
 export function build() {
 	hint = el("p", {class: "hint", role: "status"});
 	for (const [kind, text] of [["browser", "This browser"], ["sound", "Sound"]])
-		chips[kind] = el("button", {type: "button", class: "chip", onclick: () => toggle(kind)}, text);
+		chips[kind] = button(text, () => toggle(kind), {class: "chip"});
 	paint();
 	return el("div", {class: "tell"}, el("span", {class: "hint"}, "Tell me:"), chips.browser,
 		chips.sound, hint);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Where the chips are, and what is wrong there, for the view Wire: terminals of adapters, faults.
 // It touches no document.
-import {kindOf, meaningOf, qualityWords, remedyOf, stateOf} from "./words.js";
+import {kindOf, meaningOf, plural, qualityWords, remedyOf, stateOf} from "./words.js";
 
 const ABSENT = 0x08, WRONG = 0x0c, DOWN = 0x18, SHORT = 0x19, INITIAL = 0x20;
 const RANK = {good: 0, uncertain: 1, bad: 2, unknown: 3};
-
-export const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
 
 /** The lists of what has the same key. */
 function grouped(list, keyOf) {

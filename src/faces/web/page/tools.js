@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The buttons and the field above a trend: how long its window is, where, and what is done with it.
-import {el, put} from "./dom.js";
+import {button, el, put} from "./dom.js";
 import {store} from "./store.js";
 import {besideOf, lastNight, windowOf, windowText} from "./when.js";
 
 const SPANS = [[600, "10 min"], [3600, "1 h"], [28800, "8 h"], [86400, "1 d"], [604800, "7 d"],
 	[2592000, "30 d"]];
-
-const button = (text, onclick, more = {}) => el("button", {type: "button", onclick, ...more}, text);
 
 export class Tools {
 	/**

@@ -6,7 +6,7 @@ import {el, later, put} from "./dom.js";
 import {Entries} from "./entries.js";
 import {alarmsOf} from "./marks.js";
 import {Picker} from "./picker.js";
-import {continued, heldAt, pastOf} from "./series.js";
+import {continued, emptyPast, heldAt, pastOf} from "./series.js";
 import {Stack} from "./stack.js";
 import {store} from "./store.js";
 import {Tools} from "./tools.js";
@@ -246,9 +246,8 @@ async function fetchAll() {
 	draw();
 }
 
-const EMPTY = {x: [], min: [], max: [], last: [], code: [], gap: []};
-const pastNow = (signal) => continued(pasts.get(signal.name) ?? {name: signal.name, ...EMPTY},
-	signal, ...window_());
+const pastNow = (signal) => continued(pasts.get(signal.name) ?? emptyPast(signal.name), signal,
+	...window_());
 
 function draw() {
 	if (!shown || !ready)

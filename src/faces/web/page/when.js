@@ -12,7 +12,7 @@ const NIGHT_MS = 18 * 3600000; // longer nobody means by "22:00 - 6:00"
 const same = (a, b) => new Date(a).toDateString() === new Date(b).toDateString();
 /** So many days later, at the same time of the day. */
 export const daysLater = (time, days) => new Date(time).setDate(new Date(time).getDate() + days);
-const midnight = (time) => new Date(time).setHours(0, 0, 0, 0);
+export const midnight = (time) => new Date(time).setHours(0, 0, 0, 0);
 
 /** From yesterday evening to this morning, or until now: [from, until]. */
 export const lastNight = (now) => [new Date(daysLater(now, -1)).setHours(NIGHT[0], 0, 0, 0),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Where all signals of one unit are: how many in each part of the scale, and the greatest, the least
 // and the one in the middle.
-import {el, put, svg} from "./dom.js";
+import {button, el, put, svg} from "./dom.js";
 import {buckets, marksOf, middleOf, partOf, placeIn} from "./scale.js";
 import {valueText} from "./words.js";
 
@@ -113,7 +113,7 @@ export class Where {
 		const figure = (row, value, unit) => el("dd", {class: "figure"},
 			el("span", {class: "number"}, row ? valueText(row.signal, value) : String(value)), " ",
 			unit ? el("span", {class: "unit"}, unit) : null);
-		const link = (text, act) => el("button", {type: "button", class: "link", onclick: act}, text);
+		const link = (text, act) => button(text, act, {class: "link"});
 		const one = (title, value) => {
 			const {signal} = at(value);
 			return [title, link(signal.name, () => this.open(signal.name)),

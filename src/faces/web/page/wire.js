@@ -2,13 +2,13 @@
 // The view Wire: what is wrong and what to do, the adapters as strips of terminals, what was
 // counted, what owsd does to recover. Faults of the simulation and the devices are last.
 import {get} from "./api.js";
-import {el, later, put, table, wide} from "./dom.js";
+import {button, el, later, put, table, wide} from "./dom.js";
 import {faultCards} from "./faults.js";
 import {simulation} from "./simulation.js";
 import {store} from "./store.js";
 import {chipNames, percent, redraw, stripsOf} from "./strip.js";
-import {faultsOf, plural, terminalsOf} from "./terminals.js";
-import {SHAPES, clock, qualityWords, span, stateOf} from "./words.js";
+import {faultsOf, terminalsOf} from "./terminals.js";
+import {SHAPES, clock, plural, qualityWords, span, stateOf} from "./words.js";
 
 const EVERY_MS = 2000, STEPS = 50;
 const LOOKS = 16; // over which the share of a device is shown: half a minute
@@ -54,11 +54,11 @@ export function build(root) {
 	heading = el("h2", {});
 	search = el("input", {type: "search", "aria-label": "Search devices by id, kind or signal",
 		placeholder: "Search devices", oninput: draw});
-	const turn = el("button", {type: "button", "aria-pressed": "false", onclick: () => {
+	const turn = button("As a table", () => {
 		asTable = !asTable;
 		turn.setAttribute("aria-pressed", String(asTable));
 		draw();
-	}}, "As a table");
+	}, {"aria-pressed": "false"});
 	root.append(el("div", {class: "wire-top"}, sentence, aside), fault, faults,
 		el("div", {class: "tools"}, el("h2", {}, "Adapters and terminals"), turn), strips, figures,
 		steps, simulation(), el("div", {class: "tools"}, heading, search), devices);

@@ -136,6 +136,15 @@ export function msOf(time) {
 	return typeof time === "number" ? time : time ? Date.parse(time) : NaN;
 }
 
+export const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;
+
+/** "a, b, c and 2 more": the first of a list of texts. */
+export const listOf = (texts, most) => texts.slice(0, most).join(", ")
+	+ (texts.length > most ? ` and ${texts.length - most} more` : "");
+
+/** The words of a search, small. */
+export const wordsOf = (text) => text.toLowerCase().split(/\s+/).filter(Boolean);
+
 const two = (n) => String(n).padStart(2, "0");
 
 export function clock(time) {
