@@ -528,7 +528,7 @@ def test_an_alarm_is_an_event_with_its_entry(scene):
         command(page, "/api/alarm", name="level", do="ack")
         data = events.until("alarm", lambda data: data["entry"]["event"] == "acknowledged")
         assert data["alarm"] == "high, acknowledged", data
-        command(page, "/api/alarm", name="level", action="shelve", seconds=60, why="test")
+        command(page, "/api/alarm", name="level", do="shelve", seconds=60, why="test")
         assert events.until("alarm")["alarm"] == "high, shelved"
         assert page.json("/api/alarms")["alarms"][0]["why"] == "test"
         command(page, "/api/alarm", name="level", do="unshelve")

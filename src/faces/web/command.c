@@ -217,16 +217,11 @@ static int acknowledge(struct order *order)
 	return err;
 }
 
-static const char *deed(const struct body *body)
-{
-	return *body_string(body, "do") ? body_string(body, "do") : body_string(body, "action");
-}
-
 static void run_alarm(struct job *job)
 {
 	struct order *order = (struct order *)job;
 	const struct body_member *seconds = body_find(&order->body, "seconds");
-	const char *why = body_string(&order->body, "why"), *what = deed(&order->body);
+	const char *why = body_string(&order->body, "why"), *what = body_string(&order->body, "do");
 	int err;
 
 	if (command_begin(order)) {
@@ -288,7 +283,7 @@ static const char *wrong_set(const struct body *body)
 static const char *wrong_alarm(const struct body *body)
 {
 	const struct body_member *seconds = body_find(body, "seconds");
-	const char *what = deed(body);
+	const char *what = body_string(body, "do");
 
 	if (!strcmp(what, "ack") || !strcmp(what, "acknowledge") || !strcmp(what, "unshelve"))
 		return NULL;

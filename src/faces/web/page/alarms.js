@@ -102,7 +102,7 @@ function draw(alarms) {
 
 async function send(name, action, more = {}) {
 	try {
-		await post("alarm", {name, action, ...more});
+		await post("alarm", {name, do: action, ...more});
 		put(fault, "");
 		announce(`${name}: ${action} done`);
 	} catch (error) {
