@@ -89,36 +89,32 @@ static bool is_proxy_user(const struct peer *peer, const struct config_web *opti
 	return options->has_proxy && peer->uid == options->proxy_uid;
 }
 
+/* Is the peer the proxy? And its address, or its user, in words. */
+static bool look(int fd, const struct config_web *options, char words[PERSON_ADDRESS])
+{
+	struct peer peer = {0};
+	bool proxy;
+
+	if (person_is_tcp(fd, words))
+		return is_proxy_at(fd, options, words);
+	proxy = peer_look(fd, &peer) == 0 && is_proxy_user(&peer, options);
+	snprintf(words, PERSON_ADDRESS, "%lu", (unsigned long)peer.uid);
+	peer_forget(&peer);
+	return proxy;
+}
+
 bool person_is_proxy(int fd, const struct config_web *options)
 {
-	char text[PERSON_ADDRESS];
-	struct peer peer = {0};
-	bool is;
-
-	if (person_is_tcp(fd, text))
-		return is_proxy_at(fd, options, text);
-	is = peer_look(fd, &peer) == 0 && is_proxy_user(&peer, options);
-	peer_forget(&peer);
-	return is;
+	return look(fd, options, (char[PERSON_ADDRESS]){0});
 }
 
 uint64_t person_number(int fd, const struct config_web *options, const char *named)
 {
-	char text[PERSON_ADDRESS], words[2 * PERSON_ADDRESS] = "";
-	struct peer peer = {0};
-	bool proxy;
+	char words[PERSON_ADDRESS];
 
-	if (person_is_tcp(fd, text)) {
-		proxy = is_proxy_at(fd, options, text);
-		snprintf(words, sizeof(words), "%s", text);
-	} else {
-		proxy = peer_look(fd, &peer) == 0 && is_proxy_user(&peer, options);
-		snprintf(words, sizeof(words), "%lu", (unsigned long)peer.uid);
-		peer_forget(&peer);
-	}
-	if (proxy && is_name(named))
-		snprintf(words, sizeof(words), "%s", named);
-	return hash_text(HASH_BEGIN, words, strlen(words));
+	if (!look(fd, options, words) || !is_name(named))
+		named = words;
+	return hash_text(HASH_BEGIN, named, strlen(named));
 }
 
 /* What the proxy says. */
