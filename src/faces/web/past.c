@@ -10,7 +10,7 @@
 #include "hal/base/time.h"
 #include "src/faces/show/journal_past.h"
 #include "src/faces/web/http.h"
-#include "src/faces/web/past.h"
+#include "src/faces/web/paths.h"
 #include "src/public/ows_history.h"
 
 #define DIRECTORY 512

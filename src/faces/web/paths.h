@@ -2,8 +2,12 @@
 /* The functions behind the paths (api.c), as struct web_path has them. */
 #pragma once
 
-struct request;
-struct json;
+#include "src/faces/web/web.h"
+
+struct config;
+
+/* A path (without the first "/"); NULL: there is none. */
+const struct web_path *api_find(const char *path, bool post);
 
 /* What owsd has now besides values: present alarms, targets, counters, the log. */
 void lists_alarms(struct json *json, const struct request *request);
@@ -34,3 +38,12 @@ int save_restore(struct request *request);
 /* The configuration as it is on disk, and the table of its keys. */
 int stored_get(struct request *request);
 void stored_keys(struct json *json, const struct request *request);
+
+/* What the recorder kept: trends, and the journals together with those of owsd's memory. */
+int past_trend(struct request *request);
+/* The last hour of the first 200 signals, in stretches of two minutes. */
+int past_hour(struct request *request);
+int past_records(struct request *request);
+int past_journal(struct request *request);
+/* Has this instance a history? Looks at the directory. */
+bool past_is_there(const char *instance, const struct config *config);
