@@ -49,6 +49,16 @@ bool names_match(const char *name, char *const *patterns, int count)
 	return count == 0;
 }
 
+bool names_some(struct ows *h, char *const *patterns, int count)
+{
+	struct ows_info info;
+
+	for (int i = 0; ows_info(h, i, &info) == 0; i++)
+		if (names_match(info.name, patterns, count))
+			return true;
+	return false;
+}
+
 struct nearest {
 	const char *name;
 	char *best;

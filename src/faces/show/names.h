@@ -18,6 +18,8 @@ bool names_info(struct ows *h, const char *instance, const char *name, struct ow
 
 /* Does one of count patterns (fnmatch) match, or is there none? */
 bool names_match(const char *name, char *const *patterns, int count);
+/* Does a signal match? */
+bool names_some(struct ows *h, char *const *patterns, int count);
 
 /* The name that the user probably meant; false if no name is near. */
 bool names_nearest(struct ows *h, const char *name, char nearest[NAMES_MAX]);

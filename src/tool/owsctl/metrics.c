@@ -9,16 +9,6 @@
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/verbs.h"
 
-static bool any_matches(struct ows *h, char *const *patterns, int count)
-{
-	struct ows_info info;
-
-	for (int i = 0; ows_info(h, i, &info) == 0; i++)
-		if (names_match(info.name, patterns, count))
-			return true;
-	return false;
-}
-
 int verb_metrics(struct ctl *ctl, int argc, char **argv)
 {
 	struct metrics metrics = {.instance = ctl->instance};
@@ -32,7 +22,7 @@ int verb_metrics(struct ctl *ctl, int argc, char **argv)
 	metrics.pattern_count = argc - optind;
 	metrics.h = ctl_open(ctl, OWS_READ);
 	if (metrics.pattern_count > 0 &&
-	    !any_matches(metrics.h, metrics.patterns, metrics.pattern_count))
+	    !names_some(metrics.h, metrics.patterns, metrics.pattern_count))
 		status = ctl_fail("no signal matches");
 	else
 		metrics_print(stdout, &metrics, &at, INT_MAX);

@@ -322,23 +322,13 @@ static const char *nearest_word(const char *pattern)
 	return NULL;
 }
 
-static bool matches(struct ows *h, char *const *pattern)
-{
-	struct ows_info info;
-
-	for (int i = 0; i < ows_count(h); i++)
-		if (ows_info(h, i, &info) == 0 && names_match(info.name, pattern, 1))
-			return true;
-	return false;
-}
-
 bool alarms_known(struct ows *h, char *const *patterns, int count)
 {
 	const char *word;
 	bool known = true;
 
 	for (int i = 0; i < count; i++) {
-		if (matches(h, &patterns[i]))
+		if (names_some(h, &patterns[i], 1))
 			continue;
 		known = false;
 		word = nearest_word(patterns[i]);
