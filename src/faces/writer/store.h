@@ -4,9 +4,6 @@
  * in one step, so that it is the old or the new one at any moment. A writer that is killed between
  * the two steps leaves the same text in both: of a replace the old one, of a restore the new one.
  * Blocking: waits for other writers, five seconds at most.
- *
- * Room src/faces/writer: the program owsd-writer: replaces the configuration of an instance, and
- * has owsd reload.
  */
 #pragma once
 
