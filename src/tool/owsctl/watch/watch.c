@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl watch: follows signals over changes and restarts, as lines or as a live table. */
-#include <errno.h>
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -12,55 +10,9 @@
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/verbs.h"
 #include "src/tool/owsctl/watch/terminal.h"
-#include "src/tool/owsctl/watch/watch.h"
+#include "src/tool/owsctl/watch/watch_sleep.h"
 
 #define LONGEST_SLEEP (500 * NS_PER_MS) /* an age sends no wake-up, nor does a closed pipe */
-#define BETWEEN_LOOKS (10 * NS_PER_MS)  /* changes may come faster than a person reads them */
-
-static const struct watch_event restarted = {"restarted", "was started again"};
-static const struct watch_event reloaded = {"reloaded", "has reloaded its file"};
-static const struct watch_event back = {"back", "is back"};
-const struct watch_event watch_lost = {"lost", ""};
-
-bool watch_over(const struct watch *watch)
-{
-	return terminal_asked_to_end() || watch->left == 0 || ows_now() >= watch->end_ns;
-}
-
-const struct watch_event *watch_collect(struct watch *watch, const struct ows_daemon *daemon)
-{
-	bool went_on = daemon->start_ns == watch->start_ns;
-
-	watch->start_ns = daemon->start_ns;
-	watch->generation = daemon->generation;
-	watch->alive = daemon->alive;
-	rows_free(&watch->rows);
-	rows_collect(watch->h, watch->patterns, watch->pattern_count, watch->driver, &watch->rows);
-	return went_on ? &reloaded : &restarted;
-}
-
-const struct watch_event *watch_sleep(struct watch *watch, int64_t timeout_ns)
-{
-	const struct timespec pause = {.tv_nsec = BETWEEN_LOOKS};
-	int64_t left = watch->end_ns - ows_now();
-	struct ows_daemon daemon;
-	int err;
-
-	if (left > 0)
-		ctl_sleep(watch->h, &watch->news, timeout_ns < left ? timeout_ns : left);
-	nanosleep(&pause, NULL);
-	err = ows_daemon(watch->h, ows_now(), &daemon);
-	if (err && err != -ESTALE)
-		return NULL;
-	if (daemon.generation != watch->generation)
-		return watch_collect(watch, &daemon);
-	if ((bool)daemon.alive == watch->alive)
-		return NULL;
-	watch->alive = daemon.alive;
-	return daemon.alive ? &back : &watch_lost;
-}
-
-/* --- Lines ----------------------------------------------------------------------------------- */
 
 static void print_event(struct watch *watch, const struct watch_event *event)
 {
