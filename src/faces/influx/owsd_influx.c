@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * owsd-influx: pushes the signals of an owsd to a server that takes InfluxDB's line protocol. Lines
- * wait in memory, and go as a batch each few seconds; what a server has missed comes from the history
- * of owsd-recorder. One batch at a time is under way.
+ * wait in memory, and go as a batch each few seconds; what a server has missed comes from the
+ * history of owsd-recorder. One batch at a time is under way.
  */
 #include <errno.h>
 #include <string.h>

@@ -317,8 +317,8 @@ static unsigned refused(const struct request *request, const char **why)
 }
 
 /*
- * The head has passed head_check(): its length is a number. A large body is that of a configuration,
- * by a person who may edit it.
+ * The head has passed head_check(): its length is a number. A large body is that of a
+ * configuration, by a person who may edit it.
  */
 static void expect_body(struct request *request, const char *url)
 {

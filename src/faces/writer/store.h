@@ -14,9 +14,9 @@
 void store_check_items(const char *text, size_t len, struct answer *answer);
 /*
  * What the order asks for, if the file is still the one of its base. The body: a text for the place
- * of the file (if the file has this text already, both files stay as they are, and the answer is that
- * of a replace); of a rename the name that an item has, a line end, its other name. To restore puts
- * the file of before in place; the present one is then the file of before.
+ * of the file (if the file has this text already, both files stay as they are, and the answer is
+ * that of a replace); of a rename the name that an item has, a line end, its other name. To restore
+ * puts the file of before in place; the present one is then the file of before.
  */
 void store_change(const char *file, const struct order *order, const char *body,
                   struct answer *answer);

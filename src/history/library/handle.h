@@ -106,26 +106,3 @@ struct ows_history {
 		int count, given;
 	} list;
 };
-
-/*
- * A row with the columns id, value, quality, reason of a gap. What a signal had before its type
- * changed counts. 0 or -ENOMEM. Free the text.
- */
-int steps_take(sqlite3_stmt *from, const struct known_signal *signal, struct step *step);
-/* The index of the signal that has this number in the file; -1: none. */
-int handle_signal(const struct ows_history *h, int64_t number);
-/* What held at an id: 1; 0: nothing is known of it. Free the text. */
-int handle_held(struct ows_history *h, const struct known_signal *signal, int64_t id,
-                struct step *step);
-/* The steps of a signal from an id on, before end: as many as there is room for. Free the texts. */
-int handle_steps(struct ows_history *h, const struct known_signal *signal, int64_t first,
-                 int64_t end, struct step *steps, int room);
-
-/*
- * A call begins. When it has taken as much of the processor as a file of that size can need, it
- * gets -ETIMEDOUT.
- */
-void open_allow(struct ows_history *h);
-/* The ids of a run that are between two times. False: none. Pure. */
-bool handle_range(const struct session *session, int64_t from_us, int64_t until_us, int64_t *first,
-                  int64_t *end);

@@ -6,7 +6,8 @@
 #include "src/ground/signal/value.h"
 #include "src/history/file/record.h"
 #include "src/history/file/sql.h"
-#include "src/history/library/handle.h"
+#include "src/history/library/open.h"
+#include "src/history/library/steps.h"
 
 /* Columns of H_EVENTS */
 enum {

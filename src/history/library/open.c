@@ -12,6 +12,7 @@
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
 #include "src/history/library/handle.h"
+#include "src/history/library/open.h"
 #include "src/memory/shm/segment.h"
 
 /* The recorder's commits take less, and wait for no reader */

@@ -9,6 +9,8 @@
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
 #include "src/history/library/handle.h"
+#include "src/history/library/open.h"
+#include "src/history/library/steps.h"
 
 #define STEPS 512
 #define PER_POINT 2     /* hours that a point needs at least; a minute is enough */

@@ -4,8 +4,9 @@
 #include <stdlib.h>
 
 #include "src/history/file/sql.h"
-#include "src/history/library/handle.h"
+#include "src/history/library/open.h"
 #include "src/history/library/replay.h"
+#include "src/history/library/steps.h"
 
 int64_t replay_place(const struct ows_history *h, const struct replay_point *point)
 {

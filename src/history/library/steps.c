@@ -11,6 +11,8 @@
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
 #include "src/history/library/handle.h"
+#include "src/history/library/open.h"
+#include "src/history/library/steps.h"
 
 const char *ows_history_reason_text(uint8_t reason)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The rows of a family that are no reading of scan_property(). */
-#include "src/tool/scan/scan.h"
+#include "src/tool/scan/left_out.h"
 
 #include <errno.h>
 #include <math.h>

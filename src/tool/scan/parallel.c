@@ -2,6 +2,7 @@
 /* Reads devices by several connections to the same target. */
 #include <pthread.h>
 
+#include "src/tool/scan/parallel.h"
 #include "src/tool/scan/scan.h"
 #include "src/tool/scan/target.h"
 

@@ -2,9 +2,6 @@
 /* Asks a target for its devices and their properties. Blocking, as long as the target allows. */
 #pragma once
 
-#include <stdbool.h>
-#include <stddef.h>
-
 #include "src/tool/scan/device.h"
 
 struct target;
@@ -31,22 +28,3 @@ void scan_free(struct scan *scan);
 bool scan_property(const struct scan_device *device, unsigned i, struct scan_property *property);
 /* The property that says which chip it is, where its family code does not; else NULL. */
 const char *scan_identity(uint8_t family);
-
-/* Reads devices by several connections to the same target. */
-
-struct scan;
-struct target;
-
-/*
- * As scan_read() of all devices, by several connections to the target of like at once, where each
- * waits for the conversions of its own devices. 0, or the error of one of them.
- */
-int scan_read_parallel(const struct target *like, struct scan *scan, bool fresh);
-
-/* What a device measures or switches besides the properties that most people want of it. */
-
-/*
- * The properties of the device that measure or switch, and are neither of those that most people
- * want nor another form of one, as "vis, B1-R1-A/pressure".
- */
-void scan_left_out(const struct scan_device *device, char *out, size_t size);

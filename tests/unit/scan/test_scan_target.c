@@ -11,6 +11,7 @@
 #include "hal/chips/family.h"
 #include "src/faces/show/json.h"
 #include "src/tool/scan/device.h"
+#include "src/tool/scan/left_out.h"
 #include "src/tool/scan/scan.h"
 #include "src/tool/scan/target.h"
 

@@ -28,6 +28,7 @@
 #include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
 #include "src/tool/scan/device.h"
+#include "src/tool/scan/parallel.h"
 #include "src/tool/scan/scan.h"
 
 /* --- Names of an alias file of OWFS: "28.551DDF030000 = kitchen" in each line ---------------- */

@@ -15,6 +15,7 @@
 #include "src/ground/signal/value.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/scan/scan_item.h"
+#include "src/tool/scan/left_out.h"
 #include "src/tool/scan/scan.h"
 
 void scan_names_init(struct scan_names *names, size_t room)

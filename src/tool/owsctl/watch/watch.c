@@ -10,7 +10,7 @@
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/verbs.h"
 #include "src/tool/owsctl/watch/terminal.h"
-#include "src/tool/owsctl/watch/watch_sleep.h"
+#include "src/tool/owsctl/watch/watch_screen.h"
 
 #define LONGEST_SLEEP (500 * NS_PER_MS) /* an age sends no wake-up, nor does a closed pipe */
 

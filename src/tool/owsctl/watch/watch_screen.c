@@ -9,7 +9,7 @@
 #include "src/faces/show/text.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/watch/terminal.h"
-#include "src/tool/owsctl/watch/watch_sleep.h"
+#include "src/tool/owsctl/watch/watch_screen.h"
 
 #define BETWEEN_KEYS (50 * NS_PER_MS)
 #define BETWEEN_PICTURES (250 * NS_PER_MS)

@@ -37,8 +37,3 @@ const struct watch_event *watch_collect(struct watch *watch, const struct ows_da
 const struct watch_event *watch_sleep(struct watch *watch, int64_t timeout_ns);
 /* Is it time to end? */
 bool watch_over(const struct watch *watch);
-
-/* The live table of `owsctl watch`. */
-
-/* Show the table on the terminal until the user ends it. */
-void watch_screen(struct watch *watch);
