@@ -107,13 +107,13 @@ static void make_piece(const struct web *web, struct position *at, FILE *out)
 		fputs(",\"v\":[", out);
 	}
 	json = (struct json){.out = out, .inner = at->some};
-	for (int i = 0; i < PIECE && row >= 0 && web->recent.cursor[row] <= at->until; i++) {
+	for (int i = 0; i < PIECE && row >= 0 && web->recent.of[row].cursor <= at->until; i++) {
 		show_row(&json, &show, row);
-		at->seen = web->recent.cursor[row];
+		at->seen = web->recent.of[row].cursor;
 		at->some = true;
-		row = web->recent.newer[row];
+		row = web->recent.of[row].newer;
 	}
-	at->within = row >= 0 && web->recent.cursor[row] <= at->until;
+	at->within = row >= 0 && web->recent.of[row].cursor <= at->until;
 	if (at->within)
 		return;
 	if (same)
@@ -151,7 +151,7 @@ static bool may_go_out(const struct web *web, const struct stream *stream)
 	int row = look_is_current(web->face) ? recent_after(&web->recent, stream->position.seen)
 	                                     : -1;
 
-	return row >= 0 && web->recent.cursor[row] <= web->pace.sent;
+	return row >= 0 && web->recent.of[row].cursor <= web->pace.sent;
 }
 
 static bool put_next(struct stream *stream, FILE *out)

@@ -6,28 +6,16 @@
 
 void recent_free(struct recent *recent)
 {
-	free(recent->cursor);
-	free(recent->mark);
-	free(recent->older);
-	free(recent->newer);
+	free(recent->of);
 	*recent = (struct recent){.first = -1, .last = -1, .newest = recent->newest};
 }
 
 bool recent_make(struct recent *recent, int count)
 {
-	size_t n = (size_t)count + 1;
-
 	recent_free(recent);
-	recent->cursor = calloc(n, sizeof(*recent->cursor));
-	recent->mark = calloc(n, sizeof(*recent->mark));
-	recent->older = calloc(n, sizeof(*recent->older));
-	recent->newer = calloc(n, sizeof(*recent->newer));
-	if (!recent->cursor || !recent->mark || !recent->older || !recent->newer) {
-		recent_free(recent);
-		return false;
-	}
-	recent->count = count;
-	return true;
+	recent->of = calloc((size_t)count + 1, sizeof(*recent->of));
+	recent->count = recent->of ? count : 0;
+	return recent->of;
 }
 
 uint64_t recent_next(struct recent *recent, int64_t now_ns)
@@ -38,27 +26,32 @@ uint64_t recent_next(struct recent *recent, int64_t now_ns)
 	return recent->newest;
 }
 
-static void take_out(struct recent *recent, int i)
+static void take_out(struct recent *recent, const struct recent_change *change)
 {
-	int older = recent->older[i], newer = recent->newer[i];
+	int older = change->older, newer = change->newer;
 
-	*(older < 0 ? &recent->first : &recent->newer[older]) = newer;
-	*(newer < 0 ? &recent->last : &recent->older[newer]) = older;
+	*(older < 0 ? &recent->first : &recent->of[older].newer) = newer;
+	*(newer < 0 ? &recent->last : &recent->of[newer].older) = older;
 }
 
 void recent_change(struct recent *recent, int i, uint64_t mark, int64_t now_ns)
 {
+	struct recent_change *change;
+
 	if (i < 0 || i >= recent->count)
 		return;
-	if (recent->cursor[i] && recent->mark[i] == mark)
+	change = &recent->of[i];
+	if (change->cursor && change->mark == mark)
 		return;
-	recent->mark[i] = mark;
-	if (recent->cursor[i])
-		take_out(recent, i);
-	recent->cursor[i] = recent_next(recent, now_ns);
-	recent->older[i] = recent->last;
-	recent->newer[i] = -1;
-	*(recent->last < 0 ? &recent->first : &recent->newer[recent->last]) = i;
+	if (change->cursor)
+		take_out(recent, change);
+	*change = (struct recent_change){
+		.cursor = recent_next(recent, now_ns),
+		.mark = mark,
+		.older = recent->last,
+		.newer = -1,
+	};
+	*(recent->last < 0 ? &recent->first : &recent->of[recent->last].newer) = i;
 	recent->last = i;
 }
 
@@ -66,7 +59,7 @@ int recent_after(const struct recent *recent, uint64_t cursor)
 {
 	int found = -1;
 
-	for (int i = recent->last; i >= 0 && recent->cursor[i] > cursor; i = recent->older[i])
+	for (int i = recent->last; i >= 0 && recent->of[i].cursor > cursor; i = recent->of[i].older)
 		found = i;
 	return found;
 }

@@ -11,11 +11,13 @@
 
 struct recent {
 	int count;
-	uint64_t *cursor;   /* of the last change of a signal; 0: none yet */
-	uint64_t *mark;     /* of what the signal had then */
-	int *older, *newer; /* neighbours; -1: there is none */
-	int first, last;    /* the oldest and the newest */
-	uint64_t newest;    /* cursor of all that is known */
+	struct recent_change {
+		uint64_t cursor;  /* of the last change of a signal; 0: none yet */
+		uint64_t mark;    /* of what the signal had then */
+		int older, newer; /* neighbours; -1: there is none */
+	} * of;
+	int first, last; /* the oldest and the newest */
+	uint64_t newest; /* cursor of all that is known */
 };
 
 /* A table of that many signals, without changes. False: no memory, and the table is empty. */

@@ -22,7 +22,7 @@ static int after(uint64_t cursor)
 {
 	int all = 0;
 
-	for (int i = recent_after(&recent, cursor); i >= 0; i = recent.newer[i])
+	for (int i = recent_after(&recent, cursor); i >= 0; i = recent.of[i].newer)
 		all = all * 10 + i;
 	return all;
 }
@@ -46,10 +46,10 @@ static void test_a_cursor_gives_what_changed_after_it(void)
 {
 	recent_change(&recent, 1, 1, 1000000);
 	recent_change(&recent, 2, 1, 1000000);
-	TEST_ASSERT_EQUAL_INT(2, after(recent.cursor[1]));
+	TEST_ASSERT_EQUAL_INT(2, after(recent.of[1].cursor));
 	TEST_ASSERT_EQUAL_INT(-1, recent_after(&recent, recent.newest));
 	recent_change(&recent, 1, 2, 1000000);
-	TEST_ASSERT_EQUAL_INT(1, after(recent.cursor[2]));
+	TEST_ASSERT_EQUAL_INT(1, after(recent.of[2].cursor));
 }
 
 static void test_cursors_grow_also_when_time_does_not(void)
