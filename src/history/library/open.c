@@ -11,7 +11,6 @@
 #include "src/history/file/place.h"
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
-#include "src/history/library/handle.h"
 #include "src/history/library/open.h"
 #include "src/memory/shm/segment.h"
 

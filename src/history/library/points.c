@@ -8,7 +8,6 @@
 #include "src/history/file/minutes.h"
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
-#include "src/history/library/handle.h"
 #include "src/history/library/open.h"
 #include "src/history/library/steps.h"
 

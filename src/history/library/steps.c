@@ -10,7 +10,6 @@
 #include "src/history/file/record.h"
 #include "src/history/file/schema.h"
 #include "src/history/file/sql.h"
-#include "src/history/library/handle.h"
 #include "src/history/library/open.h"
 #include "src/history/library/steps.h"
 
