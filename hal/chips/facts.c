@@ -49,33 +49,18 @@ const char *model_of(const char *text)
 #define ABSOLUTE_ZERO (-273.15)
 
 /* What the type of a property says of it, where its row does not say more. */
-static bool quantity_of_type(enum property_type type, struct quantity *quantity)
+static bool quantity_of_type(uint8_t type, struct quantity *quantity)
 {
-	*quantity = (struct quantity){.least = -HUGE_VAL, .most = HUGE_VAL, .decimals = -1};
-	switch (type) {
-	case PROPERTY_TEMPERATURE:
-		quantity->least = ABSOLUTE_ZERO;
-		quantity->unit = DEGREES_C;
-		return true;
-	case PROPERTY_TEMPGAP:
-		quantity->unit = "K";
-		return true;
-	case PROPERTY_PRESSURE:
-		quantity->unit = "mbar";
-		return true;
-	case PROPERTY_ALIAS:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-	case PROPERTY_BITS:
-	case PROPERTY_DATE:
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_FLOAT:
-	case PROPERTY_INTEGER:
-	case PROPERTY_UNSIGNED:
-	case PROPERTY_YESNO:
-		break;
-	}
-	return false;
+	*quantity = (struct quantity){
+		.least = type == PROPERTY_TEMPERATURE ? ABSOLUTE_ZERO : -HUGE_VAL,
+		.most = HUGE_VAL,
+		.decimals = -1,
+		.unit = type == PROPERTY_TEMPERATURE ? DEGREES_C
+	                : type == PROPERTY_TEMPGAP   ? "K"
+	                : type == PROPERTY_PRESSURE  ? "mbar"
+	                                             : NULL,
+	};
+	return quantity->unit;
 }
 
 /* The row of the property, or of the array that it is an element of; NULL: there is none. */

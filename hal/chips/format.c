@@ -100,30 +100,22 @@ int format_number(uint8_t type, double number, char *text, size_t room)
 {
 	char out[32];
 
-	switch ((enum property_type)type) {
-	case PROPERTY_YESNO:
-	case PROPERTY_BITS:
+	switch (property_form(type)) {
+	case FORM_YESNO:
 		return format_put(number != 0 ? "1" : "0", 1, text, room);
-	case PROPERTY_UNSIGNED:
-		if (number >= 0)
+	case FORM_WHOLE:
+		if (type == PROPERTY_UNSIGNED && number >= 0)
 			return format_put(
 				out, snprintf(out, sizeof(out), "%12lu", (unsigned long)number),
 				text, room);
-		/* fallthrough */
-	case PROPERTY_INTEGER:
 		return format_put(out, snprintf(out, sizeof(out), "%12ld", (long)number), text,
 		                  room);
-	case PROPERTY_DATE:
+	case FORM_DATE:
 		return format_date(number, text, room);
-	case PROPERTY_FLOAT:
-	case PROPERTY_TEMPGAP:
-	case PROPERTY_PRESSURE:
-	case PROPERTY_TEMPERATURE:
+	case FORM_DECIMAL:
 		return format_put(out, snprintf(out, sizeof(out), "%12G", number), text, room);
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-	case PROPERTY_ALIAS:
+	case FORM_NONE:
+	case FORM_TEXT:
 		break;
 	}
 	return -EIO;
@@ -168,24 +160,7 @@ int format_value(const struct property *property, int extension, const struct tx
 
 bool format_is_number(const struct property *property, int extension)
 {
-	switch ((enum property_type)property->type) {
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-	case PROPERTY_ALIAS:
-	case PROPERTY_DATE:
-		return false;
-	case PROPERTY_FLOAT:
-	case PROPERTY_TEMPGAP:
-	case PROPERTY_INTEGER:
-	case PROPERTY_PRESSURE:
-	case PROPERTY_TEMPERATURE:
-	case PROPERTY_UNSIGNED:
-	case PROPERTY_YESNO:
-	case PROPERTY_BITS:
-		break;
-	}
-	return extension != EXTENSION_ALL;
+	return property_form(property->type) >= FORM_YESNO && extension != EXTENSION_ALL;
 }
 
 double format_as_number(const struct property *property, int extension, const struct txn *txn)
@@ -280,25 +255,19 @@ static bool takes(const struct property *property, int extension, double number)
 {
 	if (extension == EXTENSION_BYTE)
 		return is_whole_between(number, 0, ldexp(1, property->array.count) - 1);
-	switch ((enum property_type)property->type) {
-	case PROPERTY_YESNO:
-	case PROPERTY_BITS:
+	switch (property_form(property->type)) {
+	case FORM_YESNO:
 		return is_whole_between(number, 0, 1);
-	case PROPERTY_UNSIGNED:
+	case FORM_WHOLE:
+		if (property->type == PROPERTY_INTEGER)
+			return is_whole_between(number, INT32_MIN, INT32_MAX);
 		return is_whole_between(number, property->negative ? INT32_MIN : 0, UINT32_MAX) &&
 		       (!property->digits || digits_fit(property->digits, number));
-	case PROPERTY_INTEGER:
-		return is_whole_between(number, INT32_MIN, INT32_MAX);
-	case PROPERTY_FLOAT:
-	case PROPERTY_TEMPGAP:
-	case PROPERTY_PRESSURE:
-	case PROPERTY_TEMPERATURE:
+	case FORM_DECIMAL:
 		return isfinite(number);
-	case PROPERTY_DATE:
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-	case PROPERTY_ALIAS:
+	case FORM_NONE:
+	case FORM_TEXT:
+	case FORM_DATE:
 		break;
 	}
 	return false;
@@ -317,8 +286,8 @@ static int parse_text(const struct property *property, int extension, const char
 	}
 	if (property->type == PROPERTY_DATE)
 		return parse_date(copy, number);
-	if ((property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS) &&
-	    extension != EXTENSION_BYTE && parse_word(copy, number) == 0)
+	if (property_form(property->type) == FORM_YESNO && extension != EXTENSION_BYTE &&
+	    parse_word(copy, number) == 0)
 		return 0;
 	return parse_decimal(copy, number) || !takes(property, extension, *number) ? -EINVAL : 0;
 }

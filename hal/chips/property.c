@@ -5,29 +5,35 @@
 
 #include "hal/chips/property.h"
 
+static const struct {
+	uint8_t form;
+	uint16_t size; /* 0: that of the property */
+} types[] = {
+	[PROPERTY_DIRECTORY] = {FORM_NONE, 0},
+	[PROPERTY_ASCII] = {FORM_TEXT, 0},
+	[PROPERTY_BINARY] = {FORM_TEXT, 0},
+	[PROPERTY_ALIAS] = {FORM_TEXT, DEVICE_ALIAS_MAX},
+	[PROPERTY_DATE] = {FORM_DATE, 24},
+	[PROPERTY_YESNO] = {FORM_YESNO, 1},
+	[PROPERTY_BITS] = {FORM_YESNO, 1},
+	[PROPERTY_INTEGER] = {FORM_WHOLE, 12},
+	[PROPERTY_UNSIGNED] = {FORM_WHOLE, 12},
+	[PROPERTY_FLOAT] = {FORM_DECIMAL, 12},
+	[PROPERTY_TEMPGAP] = {FORM_DECIMAL, 12},
+	[PROPERTY_PRESSURE] = {FORM_DECIMAL, 12},
+	[PROPERTY_TEMPERATURE] = {FORM_DECIMAL, 12},
+};
+
+enum property_form property_form(uint8_t type)
+{
+	return (enum property_form)types[type].form;
+}
+
 unsigned property_size(const struct property *property)
 {
-	switch ((enum property_type)property->type) {
-	case PROPERTY_DIRECTORY:
-	case PROPERTY_ASCII:
-	case PROPERTY_BINARY:
-		return property->size;
-	case PROPERTY_DATE:
-		return 24;
-	case PROPERTY_FLOAT:
-	case PROPERTY_TEMPGAP:
-	case PROPERTY_INTEGER:
-	case PROPERTY_PRESSURE:
-	case PROPERTY_TEMPERATURE:
-	case PROPERTY_UNSIGNED:
-		return 12;
-	case PROPERTY_ALIAS:
-		return DEVICE_ALIAS_MAX;
-	case PROPERTY_YESNO:
-	case PROPERTY_BITS:
-		return 1;
-	}
-	return 0;
+	unsigned size = types[property->type].size;
+
+	return size ? size : property->size;
 }
 
 bool property_has_entries(const struct property *property)

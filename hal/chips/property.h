@@ -26,6 +26,9 @@ enum property_type {
 	PROPERTY_BITS = 'B', /* yes/no array in one word, with .BYTE; /structure says y */
 };
 
+/* What a value of a type is; from FORM_YESNO on a number. */
+enum property_form { FORM_NONE, FORM_TEXT, FORM_DATE, FORM_YESNO, FORM_WHOLE, FORM_DECIMAL };
+
 enum property_access { ACCESS_NONE, ACCESS_READ, ACCESS_WRITE, ACCESS_BOTH };
 
 /* How long a value stays true; the letters are those of /structure. */
@@ -105,6 +108,7 @@ struct property_how {
 	struct field set; /* what is written, if that is another field than is read */
 };
 
+enum property_form property_form(uint8_t type);
 /* Bytes of a whole value, of one element, as owserver states it. */
 unsigned property_size(const struct property *property);
 /* Is it a directory in /structure? */

@@ -78,20 +78,20 @@ static void take_access(const struct family *family, const struct property *prop
                         struct path_property *found)
 {
 	const struct property *held = property ? holder(family, property) : NULL;
+	enum property_form form;
 
 	if (!property)
 		return;
+	form = property_form(property->type);
 	snprintf(found->held, sizeof(found->held), "%s", held ? held->name : "");
 	found->readable = property->access & ACCESS_READ;
 	found->writable = property->access & ACCESS_WRITE;
 	found->holds = property->holds;
 	found->life = property->life;
 	found->alarm = property->alarm;
-	found->exact = property->type == PROPERTY_YESNO || property->type == PROPERTY_BITS ||
-	               property->type == PROPERTY_UNSIGNED || property->type == PROPERTY_INTEGER;
+	found->exact = form == FORM_YESNO || form == FORM_WHOLE;
 	found->whole = found->exact;
-	found->text = property->type == PROPERTY_ASCII || property->type == PROPERTY_BINARY ||
-	              property->type == PROPERTY_DATE || property->type == PROPERTY_ALIAS;
+	found->text = form == FORM_TEXT || form == FORM_DATE;
 }
 
 /* What of a property can be named: "latch.BYTE, or latch.0 to latch.7", "por". */
