@@ -4,8 +4,8 @@
  * parts, from the top down:
  *
  *   bus.c     the target "w1" of both, masters that come later
- *   master.c  the masters there are; sysfs in place of a refused netlink
- *   link.c    one master as a link: each part is one request
+ *   master.c  the masters there are; sysfs in place of a refused netlink; one master as a link:
+ *             each part is one request
  *   search.c  searches, made of slots; their direction is chosen before
  *   run.c     a request of a link, and the errno that its reply means
  *   talk.c    the socket; requests of several commands and their replies
