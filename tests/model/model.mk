@@ -26,7 +26,7 @@ MODEL     := $(wildcard tests/model/*.c)
 MODEL_CODE := src/memory/shm/image.c src/memory/shm/entries.c src/memory/shm/reader.c src/memory/shm/controller.c src/daemon/host/bells.c \
              src/memory/control/control.c src/memory/control/news.c src/memory/libows/alive.c src/memory/libows/changes.c src/memory/libows/get.c \
              src/memory/libows/set.c src/memory/libows/give.c src/memory/libows/command.c src/memory/libows/wait.c \
-             src/memory/libows/news.c src/memory/libows/alarm.c src/memory/libows/journal.c src/memory/libows/origin.c
+             src/memory/libows/news.c src/memory/libows/alarm.c src/memory/libows/origin.c
 # What runs as a thread of the model, beside that; all else here is the model itself
 MODEL_RUN := tests/model/changes.c tests/model/litmus.c tests/model/orders.c tests/model/records.c
 

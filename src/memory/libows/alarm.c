@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The journal of alarms, and how the alarms of a signal stand. */
+/* The journals of alarms and of commands, and how the alarms of a signal stand. */
 #include <errno.h>
 #include <string.h>
 
 #include "src/ground/signal/value.h"
 #include "src/memory/libows/actor.h"
 #include "src/memory/libows/alive.h"
-#include "src/memory/libows/journal.h"
+#include "src/memory/libows/handle.h"
 #include "src/memory/shm/reader.h"
 
 /* Fills the members of a shelved alarm; leaves them as they are if no entry is of the record. */
@@ -27,12 +27,28 @@ static void shelved_of(struct ows *h, uint32_t record, struct ows_alarm_state *s
 	}
 }
 
+/*
+ * The entry of that number of a journal; head: the number of the next one. Returns 0; -ENOENT: it
+ * is not there, or no longer kept; -EAGAIN: owsd is writing it.
+ */
+static int journal_read(struct ows *h, enum ows_area area, uint32_t head, uint32_t number,
+                        struct ows_journal_entry *e)
+{
+	uint32_t kept = map_count(&h->map, area);
+
+	if (head - 1 - number >= kept)
+		return -ENOENT;
+	if (!reader_entry(map_entry(&h->map, area, number % kept), e, sizeof(*e)))
+		return -EAGAIN;
+	return e->number == number && e->record && e->record < h->map.count ? 0 : -ENOENT;
+}
+
 uint32_t ows_alarm_count(struct ows *h)
 {
 	return __atomic_load_n(&h->map.image->alarm_head, __ATOMIC_ACQUIRE);
 }
 
-static void alarm_fill(uint8_t type, int64_t value, double *number, int64_t *integer)
+static void fill_number(uint8_t type, int64_t value, double *number, int64_t *integer)
 {
 	*number = value_number((enum ows_type)type, value);
 	*integer = value_is_float((enum ows_type)type) ? 0 : value;
@@ -57,11 +73,51 @@ int ows_alarm(struct ows *h, uint32_t number, struct ows_alarm *alarm)
 		.who = actor_of(&e.who),
 	};
 	if (alarm->has_before)
-		alarm_fill(alarm->type, e.before, &alarm->before, &alarm->before_integer);
+		fill_number(alarm->type, e.before, &alarm->before, &alarm->before_integer);
 	if (alarm->has_after)
-		alarm_fill(alarm->type, e.after, &alarm->after, &alarm->after_integer);
+		fill_number(alarm->type, e.after, &alarm->after, &alarm->after_integer);
 	memcpy(alarm->text, e.text, sizeof(alarm->text) - 1);
 	return 0;
+}
+
+uint32_t ows_command_count(struct ows *h)
+{
+	return __atomic_load_n(&h->map.image->command_head, __ATOMIC_ACQUIRE);
+}
+
+int ows_command_entry(struct ows *h, uint32_t number, struct ows_commanded *commanded)
+{
+	struct ows_journal_entry e;
+	int err = journal_read(h, OWS_AREA_COMMANDS, ows_command_count(h), number, &e);
+
+	if (err)
+		return err;
+	*commanded = (struct ows_commanded){
+		.signal = (int)e.record - 1,
+		.taken_ns = e.occurred_ns,
+		.more = e.more,
+		.type = map_record(&h->map, e.record)->type,
+		.reason = e.kind,
+		.quality = e.quality,
+		.who = actor_of(&e.who),
+	};
+	if (commanded->type == OWS_STRING) {
+		memcpy(commanded->text, e.text, sizeof(commanded->text) - 1);
+		return 0;
+	}
+	fill_number(commanded->type, e.after, &commanded->number, &commanded->integer);
+	return 0;
+}
+
+const char *ows_reason_text(uint8_t reason)
+{
+	static const char *const texts[] = {
+		[OWS_REASON_NONE] = "none",         [OWS_REASON_SET] = "set",
+		[OWS_REASON_RETURNED] = "returned", [OWS_REASON_INIT] = "InitValue",
+		[OWS_REASON_SAFE] = "SafeValue",    [OWS_REASON_LAST] = "last",
+	};
+
+	return reason < sizeof(texts) / sizeof(texts[0]) ? texts[reason] : "unknown";
 }
 
 static uint8_t unarmed_of(uint32_t flags)
