@@ -10,12 +10,10 @@
 #include "hal/owfs/frame.h"
 #include "src/daemon/serve/answer.h"
 #include "src/daemon/serve/client.h"
-#include "src/daemon/serve/server.h"
 #include "src/daemon/serve/units.h"
 #include "src/daemon/serve/work.h"
 #include "src/daemon/serve/work_ask.h"
 #include "src/daemon/serve/work_directory.h"
-#include "src/daemon/serve/work_type.h"
 #include "src/daemon/serve/work_write.h"
 
 /* --- READ: values from the server itself or from a bus, in the units of the client ----------- */

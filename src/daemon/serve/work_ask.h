@@ -22,3 +22,14 @@ void work_next_target(struct serve *s, struct client *c);
 bool work_is_directory(const struct node *node);
 /* Refuse a directory, which can be neither read nor written, if it exists. */
 void work_refuse_directory(struct serve *s, struct client *c);
+
+/*
+ * Ask for the type when the client wants a scale and the server does not know whether the value has
+ * one. False: there is nothing to ask.
+ */
+bool work_ask_type(struct serve *s, struct client *c);
+/*
+ * The engine has answered. True: the type is known now; false: the server asks again, or has
+ * answered the client.
+ */
+bool work_typed(struct serve *s, struct client *c, int err);

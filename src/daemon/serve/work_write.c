@@ -7,7 +7,6 @@
 #include "src/daemon/serve/person.h"
 #include "src/daemon/serve/units.h"
 #include "src/daemon/serve/work_ask.h"
-#include "src/daemon/serve/work_type.h"
 #include "src/daemon/serve/work_write.h"
 #include "src/ground/service/command_age.h"
 
