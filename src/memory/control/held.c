@@ -7,7 +7,6 @@
 #include "src/memory/control/held.h"
 #include "hal/base/time.h"
 #include "src/memory/control/grant.h"
-#include "src/memory/control/sealed.h"
 
 /* Connections without end do not make owsd look more often. */
 #define LOOK_NS (5 * NS_PER_MS)
@@ -75,7 +74,7 @@ void held_look(struct control *c)
 		empty_memory(c, held);
 		if (!held->asked_ns || !porter_carried(c->porter, held->slot))
 			continue;
-		if (!sealed_is_empty(held->own)) {
+		if (!grant_is_empty(held->own)) {
 			held->asked_ns = 0;
 			held->until_ns = c->now_ns + AGAIN_NS;
 		} else if (held_give(c, held, false) == 0) {
