@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Fields of areas: bits of a chip and the values that they mean. */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/field.h"
 

@@ -13,7 +13,6 @@
 #include <linux/i2c-dev.h>
 #include <linux/i2c.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 #define GPIO_NAME_MAX 64 /* of a line, a consumer, a chip; with NUL */

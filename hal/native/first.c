@@ -15,7 +15,6 @@
 #include "hal/native/job_txn.h"
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
-#include "hal/wire/crc.h"
 
 #define FRESH_NS (5 * NATIVE_S) /* a result serves a request for so long */
 #define READ_SCRATCHPAD 0xbe

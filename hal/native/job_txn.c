@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The transactions of a job: what they are to do, and which older readings serve it. */
-#include <errno.h>
 #include <string.h>
 
-#include "hal/chips/field.h"
 #include "hal/chips/format.h"
 #include "hal/native/job_txn.h"
 #include "hal/wire/driver.h"

@@ -6,7 +6,6 @@
  * numbers of 32 bits: a count wraps.
  */
 #include <errno.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

@@ -9,7 +9,6 @@
  * come by itself is reported as a restart, once; to write a setting or to convert clears all four.
  */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/chips/family.h"
 

@@ -4,7 +4,6 @@
  */
 #include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"

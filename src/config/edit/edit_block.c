@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Finds the blocks that edits change, and makes those that are not there. */
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/config/check/targets.h"

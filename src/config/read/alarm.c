@@ -5,7 +5,6 @@
 
 #include "src/config/read/alarm.h"
 #include "src/config/read/build.h"
-#include "src/config/read/options.h"
 
 static void warn_without_equals(struct build *build, const struct option_value *value,
                                 const char *follows)

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/owfs/path.h"
 #include "src/config/read/identity.h"
 
 void identity_of_path(const struct path *path, char out[IDENTITY_MAX])

@@ -3,7 +3,6 @@
 #include <fnmatch.h>
 #include <string.h>
 
-#include "src/config/read/build.h"
 #include "src/config/read/modbus.h"
 #include "src/config/read/options.h"
 #include "src/config/read/serve.h"

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/config/read/build.h"
 #include "src/config/read/mqtt.h"
 #include "src/config/read/options.h"
 #include "src/config/read/texts.h"

@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/config/read/build.h"
 #include "src/config/read/options.h"
 #include "src/config/read/recorder.h"
 #include "src/ground/signal/value.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The keys Listen... of the driver block. */
 #include <errno.h>
-#include <string.h>
 
 #include "src/config/read/build.h"
 #include "src/config/read/options.h"

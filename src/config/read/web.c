@@ -2,7 +2,6 @@
 /* The Web block: where owsd-web serves its page, for whom, and what the page may do. */
 #include <string.h>
 
-#include "src/config/read/build.h"
 #include "src/config/read/options.h"
 #include "src/config/read/others.h"
 #include "src/config/read/serve.h"

@@ -3,7 +3,6 @@
  * The order of a lane: this file chooses what the lane asks its bus next, and makes that request.
  */
 #include <errno.h>
-#include <string.h>
 
 #include "src/daemon/engine/alarm/alarm.h"
 #include "src/daemon/engine/ask.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* The user of a client, by the kernel's word, and what ControlAllow lets that user write. */
-#include <netinet/in.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>

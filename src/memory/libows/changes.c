@@ -2,7 +2,6 @@
 /* Which signals changed: ows_changes(), from the image's ring of changes, with a wait for more. */
 #include <errno.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "hal/base/time.h"
 #include "src/memory/libows/alive.h"

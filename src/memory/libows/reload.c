@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Asks owsd to load its configuration again, over a connection for this alone. */
 #include <errno.h>
-#include <string.h>
 #include <sys/socket.h>
 
 #include "src/memory/libows/join.h"

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The engine looks into the memories of controllers, checks what they commanded, and takes it. */
 #include <errno.h>
-#include <string.h>
 
 #include "hal/base/time.h"
 #include "src/daemon/engine/command/in_force.h"

@@ -19,7 +19,6 @@
 #include "src/daemon/engine/retry.h"
 #include "src/daemon/engine/scaling.h"
 #include "src/daemon/engine/schedule.h"
-#include "src/daemon/engine/state.h"
 #include "src/ground/signal/value.h"
 #include "src/memory/shm/entries.h"
 

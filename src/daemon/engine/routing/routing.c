@@ -17,7 +17,6 @@
 #include "src/daemon/engine/routing/move.h"
 #include "src/daemon/engine/routing/route.h"
 #include "src/daemon/engine/routing/routing.h"
-#include "src/daemon/engine/state.h"
 #include "src/ground/text/log.h"
 
 /* --- Groups: which way is open --------------------------------------------------------------- */
