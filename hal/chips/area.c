@@ -301,8 +301,7 @@ static int copy_row(struct txn *txn, const struct area *area, struct unit unit)
 	len += area->password;
 	if (area->strong)
 		return txn_command_strong(txn, command, len, area->copy_ns);
-	int err = txn_command(txn, command, len);
-	return err ? err : txn_wait(txn, area->copy_ns);
+	return txn_command_wait(txn, command, len, area->copy_ns);
 }
 
 static int check_unit(struct txn *txn, const struct area *area, struct unit unit)

@@ -179,6 +179,13 @@ int txn_command(struct txn *txn, const uint8_t *bytes, size_t n)
 	return send_command(txn, bytes, n, LINK_IDLE);
 }
 
+int txn_command_wait(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
+{
+	int err = txn_command(txn, bytes, n);
+
+	return err ? err : txn_wait(txn, ns);
+}
+
 int txn_command_strong(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns)
 {
 	enum link_after after;

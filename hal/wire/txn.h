@@ -90,8 +90,12 @@ int64_t txn_now(const struct txn *txn);
 /* Sends what is written so far; then returns TXN_MORE: to be called again ns later. */
 int txn_wait(struct txn *txn, int64_t ns);
 
+/* Bytes and their count, for what takes both: txn_command(txn, TXN_BYTES(0x44)). */
+#define TXN_BYTES(...) (const uint8_t[]){__VA_ARGS__}, sizeof((const uint8_t[]){__VA_ARGS__})
 /* Reset, match ROM, and n bytes. -ENODEV: no chip is there. */
 int txn_command(struct txn *txn, const uint8_t *bytes, size_t n);
+/* The same, and then txn_wait(). */
+int txn_command_wait(struct txn *txn, const uint8_t *bytes, size_t n, int64_t ns);
 /*
  * The same with the strong pull-up after the last bit, for ns. Returns TXN_MORE: to be called
  * again when the pull-up has ended. On a link that has none: without it, but -EOPNOTSUPP for a

@@ -39,11 +39,8 @@ struct visit {
 
 static int family_1b_command(struct txn *txn, uint8_t code, int64_t ns)
 {
-	int err;
-
 	txn_void(txn);
-	err = txn_command(txn, &code, 1);
-	return err ? err : txn_wait(txn, ns);
+	return txn_command_wait(txn, &code, 1, ns);
 }
 
 /* Each look recalls the page: its scratchpad may hold something else. */
@@ -57,8 +54,7 @@ static int load_page(struct txn *txn, const struct area *area, unsigned at, uint
 	(void)area;
 	if (!visit->recalled) {
 		visit->recalled = true;
-		err = txn_command(txn, &code, 1);
-		return err ? err : txn_wait(txn, COPY_NS);
+		return txn_command_wait(txn, &code, 1, COPY_NS);
 	}
 	err = area_fetch(txn, &scratchpads, at, again, n);
 	if (err)

@@ -102,7 +102,6 @@ enum { SUPPLY_ON = 0xcc, I2C_START = 0x02, I2C_STOP = 0x03, I2C_WRITE = 0xe3, I2
 static int function(struct txn *txn, const uint8_t *rom, const uint8_t *bytes, unsigned n,
                     int64_t ns, uint8_t *in, unsigned m)
 {
-	static const uint8_t release = RELEASE;
 	uint8_t out[9 + 2 + PACKET], *command = out + 9, answer[4 + 3 + 2 + I2C_AT_ONCE], none;
 	unsigned room = m > 2 ? m : 2;
 	int err;
@@ -120,7 +119,7 @@ static int function(struct txn *txn, const uint8_t *rom, const uint8_t *bytes, u
 	if (!err)
 		err = txn_read_crc16(txn, command, 2 + n, &none, 0);
 	if (!err)
-		err = txn_write_paused(txn, &release, 1, ns);
+		err = txn_write_paused(txn, TXN_BYTES(RELEASE), ns);
 	/* a byte of ones, length, result, m bytes, CRC16 */
 	if (!err)
 		err = txn_read(txn, answer, 3 + room + 2);
@@ -215,9 +214,9 @@ bool ds28e18_asleep(const uint8_t rom[8])
 int ds28e18_wake(struct txn *txn)
 {
 	/* pins as they are after power-on */
-	static const uint8_t gpio[] = {WRITE_GPIO, 0x0b, 0x03, 0xa5, 0x0f};
 	uint8_t rom[8] = {DS28E18_CODE}, none;
 
 	rom[7] = rom_crc8(rom, 7);
-	return function(txn, rom, gpio, sizeof(gpio), OPERATION_NS, &none, 0);
+	return function(txn, rom, TXN_BYTES(WRITE_GPIO, 0x0b, 0x03, 0xa5, 0x0f), OPERATION_NS,
+	                &none, 0);
 }

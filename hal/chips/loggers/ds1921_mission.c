@@ -16,7 +16,6 @@ struct visit {
 /* The result of a conversion is new when the counter of the device has moved. */
 int ds1921_read_temperature(struct txn *txn)
 {
-	static const uint8_t convert = DS1921_CONVERT;
 	const struct ds1921_version *version = ds1921_version_of(txn->device);
 	struct logger_visit *visit = txn_own(txn, struct logger_visit);
 	uint8_t page[DS1921_PAGE];
@@ -30,9 +29,9 @@ int ds1921_read_temperature(struct txn *txn)
 		return err ? err : TXN_MORE;
 	}
 	if (txn->phase == 1) {
-		err = txn_command(txn, &convert, 1);
 		txn->phase = 2;
-		return err ? err : txn_wait(txn, version->convert_ms * TXN_MS);
+		return txn_command_wait(txn, TXN_BYTES(DS1921_CONVERT),
+		                        version->convert_ms * TXN_MS);
 	}
 	err = ds1921_logger.look(txn, page);
 	if (err)
@@ -135,7 +134,6 @@ enum {
 /* The command has to follow the copy at once, before any other one. */
 static int clear_log(struct txn *txn)
 {
-	static const uint8_t command = DS1921_CLEAR_MEMORY;
 	struct logger_visit *visit = txn_own(txn, struct logger_visit);
 	int err;
 
@@ -147,9 +145,8 @@ static int clear_log(struct txn *txn)
 		txn->phase = CLEAR;
 	}
 	if (txn->phase == CLEAR) {
-		err = txn_command(txn, &command, 1);
 		txn->phase = IS_CLEAR;
-		return err ? err : txn_wait(txn, TXN_MS);
+		return txn_command_wait(txn, TXN_BYTES(DS1921_CLEAR_MEMORY), TXN_MS);
 	}
 	err = ds1921_logger.look(txn, visit->page);
 	txn->phase = SET_CLOCK;

@@ -41,7 +41,6 @@ static int take_latest(struct txn *txn, uint8_t config, const uint8_t *page)
  */
 int ds1922_read_now(struct txn *txn)
 {
-	static const uint8_t convert[] = {0x55, 0xff};
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[DS1922_PAGE];
 	int err;
@@ -64,8 +63,7 @@ int ds1922_read_now(struct txn *txn)
 			return -ENOENT;
 		return TXN_MORE;
 	case 2:
-		err = txn_command(txn, convert, sizeof(convert));
-		return err ? err : txn_wait(txn, CONVERT_NS);
+		return txn_command_wait(txn, TXN_BYTES(0x55, 0xff), CONVERT_NS);
 	case 3:
 		err = look_at_samples(txn, page);
 		if (!err &&

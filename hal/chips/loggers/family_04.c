@@ -166,12 +166,11 @@ static int read_set_alarm(struct txn *txn)
 
 static int write_set_alarm(struct txn *txn)
 {
-	static const uint8_t mask = FLAGS << ENABLES_SHIFT;
 	unsigned digits = (unsigned)txn->number[0];
 	unsigned bits = digits % 10 | digits / 10 % 10 << 1 | digits / 100 << 2;
 	uint8_t byte = (uint8_t)(bits << ENABLES_SHIFT);
 
-	return area_write(txn, &status, 0, &byte, &mask, 1);
+	return area_write(txn, &status, 0, &byte, TXN_BYTES(FLAGS << ENABLES_SHIFT));
 }
 
 enum { MEMORY = 1, CONTROL, CLOCK, INTERVAL, CYCLE, CLOCK_ALARM, INTERVAL_ALARM, CYCLE_ALARM };

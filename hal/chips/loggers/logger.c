@@ -40,9 +40,8 @@ static int to_scratchpad(struct txn *txn, unsigned at, const uint8_t *bytes, uns
 static int look_at_scratchpad(struct txn *txn, struct logger_write *write, unsigned at,
                               const uint8_t *bytes, unsigned n)
 {
-	static const uint8_t command = READ_SCRATCHPAD;
 	uint8_t in[3 + PAGE];
-	int err = txn_ask_crc16(txn, &command, 1, in, 3 + PAGE - at % PAGE);
+	int err = txn_ask_crc16(txn, TXN_BYTES(READ_SCRATCHPAD), in, 3 + PAGE - at % PAGE);
 
 	if (err)
 		return err;
@@ -61,8 +60,7 @@ static int copy_scratchpad(struct txn *txn, const struct logger_write *write, un
 
 	memset(command + 4, 0xff, LOGGER_PASSWORD);
 	txn_void(txn);
-	int err = txn_command(txn, command, chip->password ? sizeof(command) : 4);
-	return err ? err : txn_wait(txn, COPY_NS);
+	return txn_command_wait(txn, command, chip->password ? sizeof(command) : 4, COPY_NS);
 }
 
 /* TXN_MORE until the copy is confirmed. */

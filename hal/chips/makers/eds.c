@@ -290,7 +290,6 @@ int eds_write_reset(struct txn *txn)
 
 int eds_write_clear(struct txn *txn)
 {
-	static const uint8_t command = CLEAR_ALARMS;
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t page[PAGE];
 
@@ -298,7 +297,7 @@ int eds_write_clear(struct txn *txn)
 		return 0;
 	if (visit->stage == CLEAR_TIMES)
 		return area_fetch(txn, &eds_memory, PAGE, page, PAGE); /* the sensor is there */
-	int err = txn_command(txn, &command, 1);
+	int err = txn_command(txn, TXN_BYTES(CLEAR_ALARMS));
 	txn_void(txn);
 	visit->stage++;
 	return err ? err : TXN_MORE;

@@ -32,9 +32,8 @@ enum { BAE_910 = 1, BAE_911, BAE_OTHER }; /* device.kind */
 
 static int bae_identify(struct txn *txn)
 {
-	static const uint8_t command = READ_TYPE;
 	uint8_t type[2];
-	int err = txn_ask_crc16(txn, &command, 1, type, sizeof(type));
+	int err = txn_ask_crc16(txn, TXN_BYTES(READ_TYPE), type, sizeof(type));
 
 	if (!err)
 		txn->device->kind = type[0] == 2 ? BAE_910 : type[0] == 3 ? BAE_911 : BAE_OTHER;
@@ -44,11 +43,10 @@ static int bae_identify(struct txn *txn)
 /* A command of n bytes, its checksum, the confirmation. */
 static int bae_confirmed(struct txn *txn, const uint8_t *command, unsigned n)
 {
-	static const uint8_t confirm = CONFIRM;
 	uint8_t none;
 	int err = txn_ask_crc16(txn, command, n, &none, 0);
 
-	return err ? err : txn_write(txn, &confirm, 1);
+	return err ? err : txn_write(txn, TXN_BYTES(CONFIRM));
 }
 
 /* The EEPROM of a 0910 stands elsewhere. */

@@ -61,7 +61,6 @@ static int page_now(struct txn *txn, uint8_t bytes[PAGE])
 /* The busy flag proves that the command was taken. */
 static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 {
-	static const uint8_t command = 0xb4;
 	int64_t *begun = txn_own(txn, int64_t);
 	int err;
 
@@ -70,8 +69,7 @@ static int family_fe_convert(struct txn *txn, uint8_t bytes[PAGE])
 		if (txn_shared(txn, &measured, 0, bytes, PAGE))
 			return 0;
 		*begun = txn_now(txn);
-		err = txn_command(txn, &command, 1);
-		return err ? err : txn_wait(txn, SOON_NS);
+		return txn_command_wait(txn, TXN_BYTES(0xb4), SOON_NS);
 	case 1:
 		err = page_now(txn, bytes);
 		if (err)

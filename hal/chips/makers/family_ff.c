@@ -42,14 +42,13 @@ struct shown {
 /* Write n bytes to the scratchpad, and read them back. */
 static int lcd_swart_fill(struct txn *txn, const uint8_t *bytes, unsigned n)
 {
-	static const uint8_t read = READ_PAD;
 	uint8_t command[2 + LCD_PAD] = {WRITE_PAD}, in[LCD_PAD];
 	int err;
 
 	memcpy(command + 1, bytes, n);
 	err = txn_command(txn, command, 1 + n);
 	if (!err)
-		err = txn_command(txn, &read, 1);
+		err = txn_command(txn, TXN_BYTES(READ_PAD));
 	if (!err)
 		err = txn_read_slots(txn, in, sizeof(in));
 	if (err)
@@ -64,13 +63,6 @@ static int lcd_swart_switch(struct txn *txn)
 	int err = txn_command(txn, &command, 1);
 
 	return err ? err : ++txn->phase < SENT ? txn_wait(txn, CLEAR_NS) : 0;
-}
-
-static int lcd_swart_send(struct txn *txn, uint8_t command, int64_t ns)
-{
-	int err = txn_command(txn, &command, 1);
-
-	return err ? err : txn_wait(txn, ns);
 }
 
 /* A line goes to the display in chunks, each with its place ahead. 0: all are there. */
@@ -92,7 +84,7 @@ static int print_line(struct txn *txn, unsigned row, const char *line)
 		shown->filled = true;
 		return err ? err : TXN_MORE;
 	}
-	err = lcd_swart_send(txn, PRINT, PRINT_NS);
+	err = txn_command_wait(txn, TXN_BYTES(PRINT), PRINT_NS);
 	if (++shown->printed == SENT) {
 		shown->filled = shown->printed = 0;
 		shown->chunk++;
@@ -142,7 +134,7 @@ static int lcd_swart_screen(struct txn *txn)
 		return -EINVAL;
 	if (shown->cleared < SENT) {
 		shown->cleared++;
-		return lcd_swart_send(txn, CLEAR, CLEAR_NS);
+		return txn_command_wait(txn, TXN_BYTES(CLEAR), CLEAR_NS);
 	}
 	if (shown->row == rows || !line_of(txn, shown->row, line))
 		return 0;
@@ -173,9 +165,7 @@ struct lcd {
 
 static int read_pad(struct txn *txn, uint8_t bytes[LCD_PAD])
 {
-	static const uint8_t read = READ_PAD;
-
-	return txn_ask(txn, &read, 1, bytes, LCD_PAD);
+	return txn_ask(txn, TXN_BYTES(READ_PAD), bytes, LCD_PAD);
 }
 
 /*
@@ -197,7 +187,7 @@ static int fetch_by_pad(struct txn *txn, uint8_t code, const uint8_t *setup, uns
 		err = lcd_swart_fill(txn, fill, sizeof(fill));
 		return err ? err : TXN_MORE;
 	case 1:
-		return lcd_swart_send(txn, code, SOON_NS);
+		return txn_command_wait(txn, &code, 1, SOON_NS);
 	}
 	err = read_pad(txn, in);
 	if (err)
@@ -327,7 +317,7 @@ static int read_counts(struct txn *txn)
 	case 1:
 		pad->step = 2;
 		lcd->pending = true;
-		return lcd_swart_send(txn, READ_COUNTERS, SOON_NS);
+		return txn_command_wait(txn, TXN_BYTES(READ_COUNTERS), SOON_NS);
 	}
 	err = read_pad(txn, in);
 	if (err)

@@ -257,9 +257,7 @@ static int write_limit(struct txn *txn)
 /* Nothing shows that it was done. */
 static int write_command(struct txn *txn)
 {
-	const uint8_t command = (uint8_t)txn->property->arg;
-
-	return txn->number[0] != 0 ? txn_command(txn, &command, 1) : 0;
+	return txn->number[0] != 0 ? txn_command(txn, TXN_BYTES((uint8_t)txn->property->arg)) : 0;
 }
 
 enum {

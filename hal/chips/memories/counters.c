@@ -38,9 +38,8 @@ static AREA_NAMED(counters, "counters", .size = 64, .block = 4, .load = counter_
 static int store_row(struct txn *txn, const struct area *area, unsigned at, const uint8_t *bytes,
                      unsigned n)
 {
-	static const uint8_t erase[] = {ERASE_SCRATCHPAD, 0, 0};
 	uint8_t command[3 + AREA_UNIT] = {area->write, (uint8_t)at, (uint8_t)(at >> 8)};
-	int err = txn_command(txn, erase, sizeof(erase));
+	int err = txn_command(txn, TXN_BYTES(ERASE_SCRATCHPAD, 0, 0));
 
 	memcpy(command + 3, bytes, n);
 	return err ? err : txn_command(txn, command, 3 + n);

@@ -172,12 +172,11 @@ int ds2408_strobe(struct txn *txn)
 int ds2408_write_latch(struct txn *txn)
 {
 	static AREA_NAMED(latches, "latches", .size = 1);
-	static const uint8_t command = RESET_LATCHES;
 	uint8_t answer;
 
 	if (txn_driven(txn))
-		return txn_driver_write(txn, &latches, 0, &command, 1);
-	int err = txn_ask(txn, &command, 1, &answer, 1);
+		return txn_driver_write(txn, &latches, 0, TXN_BYTES(RESET_LATCHES));
+	int err = txn_ask(txn, TXN_BYTES(RESET_LATCHES), &answer, 1);
 	return err ? err : answer == DS2408_CONFIRMED ? 0 : -EBADMSG;
 }
 

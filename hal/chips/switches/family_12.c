@@ -72,12 +72,11 @@ static int read_alarm(struct txn *txn)
 
 static int write_alarm(struct txn *txn)
 {
-	static const uint8_t mask = 0x1f;
 	unsigned digits = (unsigned)txn->number[0];
 	uint8_t byte = (uint8_t)((digits / 100 & 3) << 3 | (digits / 10 % 10 & 3) << 1 |
 	                         (digits % 10 & 1));
 
-	return area_write(txn, &status, 0, &byte, &mask, 1);
+	return area_write(txn, &status, 0, &byte, TXN_BYTES(0x1f));
 }
 
 /* The boards TAI8570 and T8A: not part of one, as far as can be told. */

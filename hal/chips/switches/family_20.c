@@ -201,10 +201,10 @@ static int read_power(struct txn *txn)
 
 static int write_pio(struct txn *txn)
 {
-	static const uint8_t which = 0xf0;
 	uint8_t byte = (uint8_t)(OUTPUT_ENABLE | (txn->number[0] != 0 ? OUTPUT_OFF : 0));
 
-	return area_write(txn, &memory, CONTROL + 2 * (unsigned)txn->element, &byte, &which, 1);
+	return area_write(txn, &memory, CONTROL + 2 * (unsigned)txn->element, &byte,
+	                  TXN_BYTES(0xf0));
 }
 
 /* The power-on flags of all channels. */

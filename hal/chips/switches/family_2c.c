@@ -10,7 +10,6 @@
 static int store_register(struct txn *txn, const struct area *area, unsigned at,
                           const uint8_t *bytes, unsigned n)
 {
-	static const uint8_t release = RELEASE;
 	const uint8_t command[] = {area->write, bytes[1]};
 	const uint8_t whole[] = {area->write, bytes[1], 0xff, RELEASE};
 	uint8_t echo;
@@ -21,7 +20,7 @@ static int store_register(struct txn *txn, const struct area *area, unsigned at,
 		return err;
 	if (echo != bytes[1])
 		return -EBADMSG;
-	err = txn_write(txn, &release, 1);
+	err = txn_write(txn, TXN_BYTES(RELEASE));
 	/* A link that takes no write behind a read: to read is to write ones. */
 	return err == -EOPNOTSUPP ? txn_command(txn, whole, sizeof(whole)) : err;
 }

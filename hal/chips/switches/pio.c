@@ -48,9 +48,8 @@ static int look_at_copy(struct txn *txn, uint8_t status)
  */
 static int read_status(struct txn *txn, uint8_t *nibble)
 {
-	static const uint8_t command = READ_PIO;
 	uint8_t status[3];
-	int err = txn_ask(txn, &command, 1, status, sizeof(status));
+	int err = txn_ask(txn, TXN_BYTES(READ_PIO), status, sizeof(status));
 
 	if (err)
 		return err;

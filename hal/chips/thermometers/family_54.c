@@ -40,10 +40,9 @@ static int read_registers(struct txn *txn, uint8_t at, uint8_t *bytes, uint8_t n
 /* The chip answers with the CRC16 of the command; behind its last bit the conversion begins. */
 static int start_conversion(struct txn *txn)
 {
-	static const uint8_t command = CONVERT;
-	uint16_t covered = onewire_crc16(0, &command, 1);
+	uint16_t covered = onewire_crc16(0, TXN_BYTES(CONVERT));
 	uint8_t crc[2] = {0};
-	int err = txn_command(txn, &command, 1);
+	int err = txn_command(txn, TXN_BYTES(CONVERT));
 
 	if (!err)
 		err = txn_read_slots(txn, crc, txn->link->facts->strong ? 1 : 2);
@@ -66,9 +65,8 @@ static int start_conversion(struct txn *txn)
 
 static int flush_fifo(struct txn *txn)
 {
-	static const uint8_t command[] = {WRITE, FIFO_CONFIGURATION, 0, FLUSH};
 	uint8_t none;
-	return txn_ask_crc16(txn, command, sizeof(command), &none, 0);
+	return txn_ask_crc16(txn, TXN_BYTES(WRITE, FIFO_CONFIGURATION, 0, FLUSH), &none, 0);
 }
 
 static int read_temperature(struct txn *txn)

@@ -115,19 +115,15 @@ int thermometer_settings(struct txn *txn, uint8_t scratchpad[9])
 
 int thermometer_start(struct txn *txn)
 {
-	static const uint8_t command = THERMOMETER_CONVERT;
-
 	if (txn_driven(txn))
 		return txn_driver_convert(txn, "temperature");
-	int err = txn_command(txn, &command, 1);
+	int err = txn_command(txn, TXN_BYTES(THERMOMETER_CONVERT));
 	return err ? err : txn_started(txn);
 }
 
 int thermometer_start_fed(struct txn *txn, int64_t ns)
 {
-	static const uint8_t command = THERMOMETER_CONVERT;
-
-	return txn_command_strong(txn, &command, 1, ns);
+	return txn_command_strong(txn, TXN_BYTES(THERMOMETER_CONVERT), ns);
 }
 
 /* Sixteenths of a degree at the resolution that the scratchpad states. */
@@ -306,7 +302,6 @@ bool thermometer_forgot(const struct device *device)
 
 int thermometer_recall(struct txn *txn)
 {
-	static const uint8_t recall = RECALL;
 	struct thermometer *chip = thermometer_of(txn->device);
 	int err = thermometer_rest(txn);
 
@@ -314,7 +309,7 @@ int thermometer_recall(struct txn *txn)
 		return err;
 	chip->recalled = true;
 	chip->resolution = chip->stored = 0;
-	err = txn_command(txn, &recall, 1);
+	err = txn_command(txn, TXN_BYTES(RECALL));
 	return err ? err : TXN_MORE;
 }
 
@@ -340,13 +335,12 @@ int thermometer_read_tempres(struct txn *txn)
 static int look_at_supply(struct txn *txn, uint8_t *slots)
 {
 	static AREA_NAMED(supply, "supply", .size = 1);
-	static const uint8_t command = THERMOMETER_READ_POWER;
 	int err;
 
 	if (txn_driven(txn)) {
 		err = txn_driver_read(txn, &supply, 0, slots, 1);
 	} else {
-		err = txn_command(txn, &command, 1);
+		err = txn_command(txn, TXN_BYTES(THERMOMETER_READ_POWER));
 		err = err ? err : txn_read_slots(txn, slots, 1);
 	}
 	txn->silent = false;

@@ -80,9 +80,8 @@ static bool has_settings(struct txn *txn, const uint8_t scratchpad[9])
 /* Recall E2, its end, and what is there then. */
 static int recall_settings(struct txn *txn, uint8_t scratchpad[9])
 {
-	static const uint8_t recall = RECALL;
 	uint8_t slots = 0;
-	int err = txn_command(txn, &recall, 1);
+	int err = txn_command(txn, TXN_BYTES(RECALL));
 
 	thermometer_of(txn->device)->resolution = 0;
 	for (unsigned i = 0; !err && slots != 0xff && i < RECALL_BYTES; i++)

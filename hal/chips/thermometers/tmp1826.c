@@ -148,13 +148,12 @@ static int look_again(struct txn *txn, const uint8_t in[BYTES])
 
 int tmp1826_identify(struct txn *txn)
 {
-	static const uint8_t command[] = {READ_SCRATCHPAD, 0};
 	uint8_t in[BYTES];
 	int err;
 
 	if (txn_driven(txn))
 		return identify_driven(txn);
-	err = txn_ask(txn, command, sizeof(command), in, BYTES);
+	err = txn_ask(txn, TXN_BYTES(READ_SCRATCHPAD, 0), in, BYTES);
 	return err ? err : look_again(txn, in);
 }
 
@@ -170,8 +169,7 @@ struct measurement {
  */
 static int read_pad(struct txn *txn, uint8_t pad[PAD])
 {
-	static const uint8_t command = READ_SCRATCHPAD;
-	int err = txn_ask(txn, &command, 1, pad, PAD);
+	int err = txn_ask(txn, TXN_BYTES(READ_SCRATCHPAD), pad, PAD);
 
 	if (err)
 		return err;
@@ -199,7 +197,6 @@ static double celsius_of(const uint8_t pad[PAD], unsigned at)
  */
 int tmp1826_read_temperature(struct txn *txn)
 {
-	static const uint8_t command = CONVERT;
 	struct measurement *visit = txn_own(txn, struct measurement);
 	uint8_t pad[PAD];
 	int err;
@@ -209,9 +206,8 @@ int tmp1826_read_temperature(struct txn *txn)
 
 		txn->phase = 2;
 		if (txn->device->power == POWER_PARASITE)
-			return txn_command_strong(txn, &command, 1, ns);
-		err = txn_command(txn, &command, 1);
-		return err ? err : txn_wait(txn, ns);
+			return txn_command_strong(txn, TXN_BYTES(CONVERT), ns);
+		return txn_command_wait(txn, TXN_BYTES(CONVERT), ns);
 	}
 	err = read_pad(txn, pad);
 	if (err)
@@ -329,7 +325,6 @@ enum { LOOK, VERIFY, CHECK };
 
 int tmp1826_write_limit(struct txn *txn)
 {
-	static const uint8_t copy = COPY_SCRATCHPAD_1;
 	struct visit *visit = txn_own(txn, struct visit);
 	uint8_t pad[PAD], have[SETTINGS];
 	int err = read_pad(txn, pad);
@@ -357,7 +352,7 @@ int tmp1826_write_limit(struct txn *txn)
 	if (txn->phase == VERIFY) {
 		txn_changed(txn);
 		txn->phase = CHECK;
-		return txn_command_strong(txn, &copy, 1, PROGRAM_NS);
+		return txn_command_strong(txn, TXN_BYTES(COPY_SCRATCHPAD_1), PROGRAM_NS);
 	}
 	tmp1826_of(txn)->kept = true;
 	return 0;
@@ -404,7 +399,6 @@ int tmp1826_write_alert(struct txn *txn)
 static int load_memory(struct txn *txn, const struct area *area, unsigned at, uint8_t *bytes,
                        unsigned n)
 {
-	static const uint8_t command = READ_EEPROM;
 	const uint8_t where[] = {0, (uint8_t)at};
 	uint8_t in[BLOCK + BEHIND];
 	int err;
@@ -412,7 +406,7 @@ static int load_memory(struct txn *txn, const struct area *area, unsigned at, ui
 	(void)area;
 	if (n != BLOCK || at % BLOCK)
 		return -EINVAL;
-	err = txn_command(txn, &command, 1);
+	err = txn_command(txn, TXN_BYTES(READ_EEPROM));
 	if (!err)
 		err = txn_write_paused(txn, where, sizeof(where), READ_IDLE_NS);
 	if (!err)

@@ -20,12 +20,12 @@
  */
 static int send_convert_all(struct native *native, unsigned n, bool strong)
 {
-	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_CONVERT};
 	struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n};
 
 	if (txn.link->driver)
 		return txn.link->driver->convert(txn.link, NULL, "temperature");
-	int err = txn_raw_then(&txn, command, sizeof(command), strong ? LINK_STRONG : LINK_IDLE);
+	int err = txn_raw_then(&txn, TXN_BYTES(SKIP_ROM, THERMOMETER_CONVERT),
+	                       strong ? LINK_STRONG : LINK_IDLE);
 
 	if (!err && !strong)
 		err = txn_started(&txn);

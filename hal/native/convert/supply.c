@@ -13,14 +13,13 @@
 /* Read Power Supply of all at once: ones mean that no chip is parasitic, or that none heard. */
 static int look_at_supply(struct native *native, unsigned n)
 {
-	static const uint8_t command[] = {SKIP_ROM, THERMOMETER_READ_POWER};
 	struct txn txn = {.native = native, .link = native->channel[n].link, .channel = n};
 	uint8_t slots;
 
 	/* A driver sees to those that are fed by the wire. */
 	if (txn.link->driver)
 		return 1;
-	int err = txn_raw(&txn, command, sizeof(command));
+	int err = txn_raw(&txn, TXN_BYTES(SKIP_ROM, THERMOMETER_READ_POWER));
 
 	if (!err)
 		err = txn_read(&txn, &slots, 1);

@@ -11,7 +11,7 @@
 #include "src/memory/libows/map.h"
 #include "src/memory/shm/reader.h"
 
-/* --- A sample as the value that the caller gets ------------------------------------------------ */
+/* --- A sample as the value that the caller gets ----------------------------------------------- */
 
 /* The stamp of this handle's last command for the record that was confirmed; 0: none. */
 static uint32_t value_applied(const struct ows *h, uint32_t record)
