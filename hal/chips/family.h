@@ -136,6 +136,12 @@ extern const struct family family_common;
 #define PROPERTIES(table) .properties = (table), .count = sizeof(table) / sizeof((table)[0])
 #define AREAS(list) .areas = (list), .area_count = sizeof(list) / sizeof((list)[0])
 #define HOW(list) .how = (list), .how_count = sizeof(list) / sizeof((list)[0])
+/*
+ * The ways of a family in one list, #define WAYS(X) X(CLOCK, .read = read_clock) ..., of which
+ * enum { WAY_NONE, WAYS(WAY_ENUM) } and how[] = {WAYS(WAY_HOW)} are made.
+ */
+#define WAY_ENUM(name, ...) WAY_##name,
+#define WAY_HOW(name, ...) [WAY_##name] = {__VA_ARGS__},
 
 /*
  * The hidden property "identity" of families whose code does not decide which chip it is: the

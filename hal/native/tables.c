@@ -254,48 +254,28 @@ static int read_aliases(struct txn *txn)
 /* --- The tables --- */
 
 /* The ways in which all tables answer: index of how[]. */
-enum {
-	WAY_ADDRESS = 1,
-	WAY_ARG,
-	WAY_NAME,
-	WAY_COST,
-	WAY_ELAPSED,
-	WAY_CHANNEL,
-	WAY_COUNT,
-	WAY_SIMULTANEOUS,
-	WAY_PRESENT,
-	WAY_SINGLE,
-	WAY_NOTHING,
-	WAY_VERSION,
-	WAY_BUSES,
-	WAY_PID,
-	WAY_EMPTY,
-	WAY_SCALE,
-	WAY_TIMEOUT,
-	WAY_FLAG,
-	WAY_ALIASES,
-};
-static const struct property_how how[] = {
-	[WAY_ADDRESS] = {.read = read_address},
-	[WAY_ARG] = {.read = read_arg},
-	[WAY_NAME] = {.read = read_name},
-	[WAY_COST] = {.read = read_cost},
-	[WAY_ELAPSED] = {.read = read_elapsed},
-	[WAY_CHANNEL] = {.read = read_channel},
-	[WAY_COUNT] = {.read = read_count},
-	[WAY_SIMULTANEOUS] = {.read = read_simultaneous},
-	[WAY_PRESENT] = {.read = read_present},
-	[WAY_SINGLE] = {.read = read_single},
-	[WAY_NOTHING] = {.read = read_arg, .write = write_nothing},
-	[WAY_VERSION] = {.read = read_version},
-	[WAY_BUSES] = {.read = read_buses},
-	[WAY_PID] = {.read = read_pid},
-	[WAY_EMPTY] = {.read = read_empty},
-	[WAY_SCALE] = {.read = read_scale, .write = write_scale},
-	[WAY_TIMEOUT] = {.read = read_timeout, .write = write_timeout},
-	[WAY_FLAG] = {.read = read_flag, .write = write_flag},
-	[WAY_ALIASES] = {.read = read_aliases},
-};
+#define WAYS(X) \
+	X(ADDRESS, .read = read_address) \
+	X(ARG, .read = read_arg) \
+	X(NAME, .read = read_name) \
+	X(COST, .read = read_cost) \
+	X(ELAPSED, .read = read_elapsed) \
+	X(CHANNEL, .read = read_channel) \
+	X(COUNT, .read = read_count) \
+	X(SIMULTANEOUS, .read = read_simultaneous) \
+	X(PRESENT, .read = read_present) \
+	X(SINGLE, .read = read_single) \
+	X(NOTHING, .read = read_arg, .write = write_nothing) \
+	X(VERSION, .read = read_version) \
+	X(BUSES, .read = read_buses) \
+	X(PID, .read = read_pid) \
+	X(EMPTY, .read = read_empty) \
+	X(SCALE, .read = read_scale, .write = write_scale) \
+	X(TIMEOUT, .read = read_timeout, .write = write_timeout) \
+	X(FLAG, .read = read_flag, .write = write_flag) \
+	X(ALIASES, .read = read_aliases)
+enum { WAY_NONE, WAYS(WAY_ENUM) };
+static const struct property_how how[] = {WAYS(WAY_HOW)};
 
 #define VIRTUAL(text, kind, life_, access_, what, how_) \
 	PROPERTY(text, kind, life_, access_, .offline = true, .arg = (what), .how = (how_))

@@ -222,51 +222,32 @@ static int read_temperature(struct txn *txn)
 	                                       : ds2438_read_measured(txn);
 }
 
-enum {
-	WAY_HUMIDITY = 1,
-	WAY_PRESSURE,
-	WAY_LIGHT,
-	WAY_SETTING,
-	WAY_SENSOR_TYPE,
-	WAY_RESET_DATANAB,
-	WAY_MEASURED,
-	WAY_FLAG,
-	WAY_TIME,
-	WAY_PAGE,
-	WAY_OFFSET,
-	WAY_IDENTITY,
-	WAY_TEMPERATURE,
-	WAY_LIMIT,
-	WAY_POWER,
-	WAY_FORMAT,
-	WAY_ALERT,
-};
-
 /* The chips are told apart before anything is asked of them. */
 static int read_identity(struct txn *txn)
 {
 	return property_text(txn, family_type(txn->device));
 }
 
-static const struct property_how how[] = {
-	[WAY_HUMIDITY] = {.read = sensor_read_humidity},
-	[WAY_PRESSURE] = {.read = sensor_read_pressure},
-	[WAY_LIGHT] = {.read = sensor_read_light},
-	[WAY_SETTING] = {.read = sensor_read_setting, .write = sensor_write_setting},
-	[WAY_SENSOR_TYPE] = {.read = sensor_read_type},
-	[WAY_RESET_DATANAB] = {.write = property_refuse},
-	[WAY_MEASURED] = {.read = ds2438_read_measured},
-	[WAY_FLAG] = {.write = ds2438_write_flag},
-	[WAY_TIME] = {.write = ds2438_write_field},
-	[WAY_PAGE] = {.write = ds2438_write_page},
-	[WAY_OFFSET] = {.read = read_offset, .write = write_offset},
-	[WAY_IDENTITY] = {.read = read_identity},
-	[WAY_TEMPERATURE] = {.read = read_temperature},
-	[WAY_LIMIT] = {.read = tmp1826_read_limit, .write = tmp1826_write_limit},
-	[WAY_POWER] = {.read = tmp1826_read_power},
-	[WAY_FORMAT] = {.read = tmp1826_read_format},
-	[WAY_ALERT] = {.read = tmp1826_read_alert, .write = tmp1826_write_alert},
-};
+#define WAYS(X) \
+	X(HUMIDITY, .read = sensor_read_humidity) \
+	X(PRESSURE, .read = sensor_read_pressure) \
+	X(LIGHT, .read = sensor_read_light) \
+	X(SETTING, .read = sensor_read_setting, .write = sensor_write_setting) \
+	X(SENSOR_TYPE, .read = sensor_read_type) \
+	X(RESET_DATANAB, .write = property_refuse) \
+	X(MEASURED, .read = ds2438_read_measured) \
+	X(FLAG, .write = ds2438_write_flag) \
+	X(TIME, .write = ds2438_write_field) \
+	X(PAGE, .write = ds2438_write_page) \
+	X(OFFSET, .read = read_offset, .write = write_offset) \
+	X(IDENTITY, .read = read_identity) \
+	X(TEMPERATURE, .read = read_temperature) \
+	X(LIMIT, .read = tmp1826_read_limit, .write = tmp1826_write_limit) \
+	X(POWER, .read = tmp1826_read_power) \
+	X(FORMAT, .read = tmp1826_read_format) \
+	X(ALERT, .read = tmp1826_read_alert, .write = tmp1826_write_alert)
+enum { WAY_NONE, WAYS(WAY_ENUM) };
+static const struct property_how how[] = {WAYS(WAY_HOW)};
 
 /* clang-format off */
 #define MEASURED(text, kind, what, ...) \

@@ -232,44 +232,26 @@ static const struct area *const areas[] = {[MEMORY] = &ds1921_memory,
                                            [HISTOGRAM] = &ds1921_histogram,
                                            [LOG] = &ds1921_log};
 
-enum {
-	WAY_VERSION = 1,
-	WAY_BINS,
-	WAY_CLOCK,
-	WAY_FIELD,
-	WAY_STATUS,
-	WAY_FLAG,
-	WAY_ELEMENTS,
-	WAY_LOG,
-	WAY_STAMP,
-	WAY_TIMES,
-	WAY_LIMIT,
-	WAY_TRIGGER,
-	WAY_TEMPERATURE,
-	WAY_CLEAR,
-	WAY_FREQUENCY,
-	WAY_RUNNING,
-	WAY_EASYSTART,
-};
-static const struct property_how how[] = {
-	[WAY_VERSION] = {.read = ds1921_read_version},
-	[WAY_BINS] = {.read = ds1921_read_bins},
-	[WAY_CLOCK] = {.read = logger_read_clock, .write = ds1921_write_clock},
-	[WAY_FIELD] = {.write = logger_write_field},
-	[WAY_STATUS] = {.write = ds1921_write_status},
-	[WAY_FLAG] = {.write = ds1921_write_flag},
-	[WAY_ELEMENTS] = {.read = logger_read_elements},
-	[WAY_LOG] = {.read = ds1921_read_log},
-	[WAY_STAMP] = {.read = logger_read_date},
-	[WAY_TIMES] = {.read = ds1921_read_times},
-	[WAY_LIMIT] = {.read = ds1921_read_limit, .write = ds1921_write_limit},
-	[WAY_TRIGGER] = {.read = ds1921_read_trigger, .write = ds1921_write_trigger},
-	[WAY_TEMPERATURE] = {.read = ds1921_read_temperature},
-	[WAY_CLEAR] = {.write = ds1921_clear_memory},
-	[WAY_FREQUENCY] = {.write = ds1921_write_frequency},
-	[WAY_RUNNING] = {.write = ds1921_write_running},
-	[WAY_EASYSTART] = {.write = ds1921_write_easystart},
-};
+#define WAYS(X) \
+	X(VERSION, .read = ds1921_read_version) \
+	X(BINS, .read = ds1921_read_bins) \
+	X(CLOCK, .read = logger_read_clock, .write = ds1921_write_clock) \
+	X(FIELD, .write = logger_write_field) \
+	X(STATUS, .write = ds1921_write_status) \
+	X(FLAG, .write = ds1921_write_flag) \
+	X(ELEMENTS, .read = logger_read_elements) \
+	X(LOG, .read = ds1921_read_log) \
+	X(STAMP, .read = logger_read_date) \
+	X(TIMES, .read = ds1921_read_times) \
+	X(LIMIT, .read = ds1921_read_limit, .write = ds1921_write_limit) \
+	X(TRIGGER, .read = ds1921_read_trigger, .write = ds1921_write_trigger) \
+	X(TEMPERATURE, .read = ds1921_read_temperature) \
+	X(CLEAR, .write = ds1921_clear_memory) \
+	X(FREQUENCY, .write = ds1921_write_frequency) \
+	X(RUNNING, .write = ds1921_write_running) \
+	X(EASYSTART, .write = ds1921_write_easystart)
+enum { WAY_NONE, WAYS(WAY_ENUM) };
+static const struct property_how how[] = {WAYS(WAY_HOW)};
 
 #define VERSION(text, type, what) \
 	PROPERTY(text, type, STATIC, READ, .offline = true, .arg = (what), .how = WAY_VERSION)

@@ -174,28 +174,18 @@ static int ds1922_read_interval(struct txn *txn)
 enum { MEMORY = 1 };
 static const struct area *const areas[] = {[MEMORY] = &ds1922_memory};
 
-enum {
-	WAY_CLOCK = 1,
-	WAY_STAMP,
-	WAY_FIELD,
-	WAY_RUNNING,
-	WAY_INTERVAL,
-	WAY_ELEMENTS,
-	WAY_LOG,
-	WAY_NOW,
-	WAY_PAGE,
-};
-static const struct property_how how[] = {
-	[WAY_CLOCK] = {.read = logger_read_clock, .write = ds1922_write_clock},
-	[WAY_STAMP] = {.read = logger_read_date},
-	[WAY_FIELD] = {.write = logger_write_field},
-	[WAY_RUNNING] = {.write = ds1922_write_running},
-	[WAY_INTERVAL] = {.read = ds1922_read_interval, .write = ds1922_write_interval},
-	[WAY_ELEMENTS] = {.read = logger_read_elements},
-	[WAY_LOG] = {.read = ds1922_read_log},
-	[WAY_NOW] = {.read = ds1922_read_now},
-	[WAY_PAGE] = {.write = ds1922_write_page},
-};
+#define WAYS(X) \
+	X(CLOCK, .read = logger_read_clock, .write = ds1922_write_clock) \
+	X(STAMP, .read = logger_read_date) \
+	X(FIELD, .write = logger_write_field) \
+	X(RUNNING, .write = ds1922_write_running) \
+	X(INTERVAL, .read = ds1922_read_interval, .write = ds1922_write_interval) \
+	X(ELEMENTS, .read = logger_read_elements) \
+	X(LOG, .read = ds1922_read_log) \
+	X(NOW, .read = ds1922_read_now) \
+	X(PAGE, .write = ds1922_write_page)
+enum { WAY_NONE, WAYS(WAY_ENUM) };
+static const struct property_how how[] = {WAYS(WAY_HOW)};
 
 #define BIT(text, life, access, where, shift_, way) \
 	PROPERTY(text, YESNO, life, access, .how = (way), \

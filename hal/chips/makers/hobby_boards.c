@@ -260,59 +260,37 @@ static int write_command(struct txn *txn)
 	return txn->number[0] != 0 ? txn_command(txn, TXN_BYTES((uint8_t)txn->property->arg)) : 0;
 }
 
-enum {
-	TYPE = 1,
-	VERSION,
-	UVI_TEMPERATURE,
-	TEMPERATURE_OFFSET,
-	UVI_VALUE,
-	UVI_OFFSET,
-	IN_CASE,
-	POLLING,
-	AVAILABLE,
-	LOCATION,
-	CONFIG,
-	TEMPERATURE,
-	PRESSURE,
-	PRESSURE_ALTITUDE,
-	ALTITUDE,
-	CORRECTED,
-	UNCORRECTED,
-	HUMIDITY_OFFSET,
-	TEMPERATURES,
-	SENSORS,
-	RAW,
-	HUB_CONFIG,
-	SHORTED,
-	BRANCHES,
-};
-static const struct area *const areas[] = {
-	[TYPE] = &hobby_type,
-	[VERSION] = &hobby_version,
-	[UVI_TEMPERATURE] = AREA(HOBBY_VALUE("temperature", 2, 0x21)),
-	[TEMPERATURE_OFFSET] = AREA(HOBBY_SETTING("temperature offset", 2, 0x23, 0x22)),
-	/* all ones: there is no measurement */
-	[UVI_VALUE] = AREA(HOBBY_VALUE("UVI", 1, 0x24), .ones_lie = true),
-	[UVI_OFFSET] = &uvi_offset,
-	[IN_CASE] = &in_case,
-	[POLLING] = AREA(HOBBY_SETTING("polling frequency", 1, 0x14, 0x94)),
-	[AVAILABLE] = AREA(HOBBY_VALUE("polling frequencies", 1, 0x15)),
-	[LOCATION] = AREA(HOBBY_SETTING("location", 21, 0x16, 0x96)),
-	[CONFIG] = AREA(HOBBY_SETTING("config", 1, 0x61, 0xe1)),
-	[TEMPERATURE] = AREA(HOBBY_VALUE("temperature", 2, 0x40)),
-	[PRESSURE] = AREA(HOBBY_VALUE("pressure", 2, 0x22)),
-	[PRESSURE_ALTITUDE] = AREA(HOBBY_VALUE("pressure altitude", 2, 0x24)),
-	[ALTITUDE] = AREA(HOBBY_SETTING("altitude", 2, 0x26, 0xa6)),
-	[CORRECTED] = AREA(HOBBY_VALUE("humidity", 2, 0x21)),
-	[UNCORRECTED] = AREA(HOBBY_VALUE("raw humidity", 2, 0x22)),
-	[HUMIDITY_OFFSET] = AREA(HOBBY_SETTING("humidity offset", 2, 0x24, 0xa4)),
-	[TEMPERATURES] = AREA(HOBBY_VALUE("temperatures", 12, 0x21)),
-	[SENSORS] = AREA(HOBBY_VALUE("sensors", 4, 0x21)),
-	[RAW] = AREA(HOBBY_VALUE("raw", 8, 0x31)),
-	[HUB_CONFIG] = &hub_config,
-	[SHORTED] = AREA(HOBBY_VALUE("shorted", 1, 0x23)),
-	[BRANCHES] = &branches,
-};
+/* Name and area. */
+#define HOBBY_AREAS(X) \
+	X(TYPE, &hobby_type) \
+	X(VERSION, &hobby_version) \
+	X(UVI_TEMPERATURE, AREA(HOBBY_VALUE("temperature", 2, 0x21))) \
+	X(TEMPERATURE_OFFSET, AREA(HOBBY_SETTING("temperature offset", 2, 0x23, 0x22))) \
+	/* all ones: there is no measurement */ \
+	X(UVI_VALUE, AREA(HOBBY_VALUE("UVI", 1, 0x24), .ones_lie = true)) \
+	X(UVI_OFFSET, &uvi_offset) \
+	X(IN_CASE, &in_case) \
+	X(POLLING, AREA(HOBBY_SETTING("polling frequency", 1, 0x14, 0x94))) \
+	X(AVAILABLE, AREA(HOBBY_VALUE("polling frequencies", 1, 0x15))) \
+	X(LOCATION, AREA(HOBBY_SETTING("location", 21, 0x16, 0x96))) \
+	X(CONFIG, AREA(HOBBY_SETTING("config", 1, 0x61, 0xe1))) \
+	X(TEMPERATURE, AREA(HOBBY_VALUE("temperature", 2, 0x40))) \
+	X(PRESSURE, AREA(HOBBY_VALUE("pressure", 2, 0x22))) \
+	X(PRESSURE_ALTITUDE, AREA(HOBBY_VALUE("pressure altitude", 2, 0x24))) \
+	X(ALTITUDE, AREA(HOBBY_SETTING("altitude", 2, 0x26, 0xa6))) \
+	X(CORRECTED, AREA(HOBBY_VALUE("humidity", 2, 0x21))) \
+	X(UNCORRECTED, AREA(HOBBY_VALUE("raw humidity", 2, 0x22))) \
+	X(HUMIDITY_OFFSET, AREA(HOBBY_SETTING("humidity offset", 2, 0x24, 0xa4))) \
+	X(TEMPERATURES, AREA(HOBBY_VALUE("temperatures", 12, 0x21))) \
+	X(SENSORS, AREA(HOBBY_VALUE("sensors", 4, 0x21))) \
+	X(RAW, AREA(HOBBY_VALUE("raw", 8, 0x31))) \
+	X(HUB_CONFIG, &hub_config) \
+	X(SHORTED, AREA(HOBBY_VALUE("shorted", 1, 0x23))) \
+	X(BRANCHES, &branches)
+#define AREA_ENUM(name, ...) name,
+#define AREA_OF(name, ...) [name] = __VA_ARGS__,
+enum { NO_AREA, HOBBY_AREAS(AREA_ENUM) };
+static const struct area *const areas[] = {HOBBY_AREAS(AREA_OF)};
 
 enum { WAY_TEXT = 1, WAY_TYPE, WAY_VERSION, WAY_UVI, WAY_BRANCH, WAY_LEAF, WAY_LIMIT, WAY_COMMAND };
 static const struct property_how how[] = {

@@ -243,24 +243,16 @@ static int read_co2_supply(struct txn *txn)
 enum { MEMORY = 1 };
 static const struct area *const areas[] = {[MEMORY] = &memory};
 
-enum {
-	WAY_VOLT = 1,
-	WAY_PIO,
-	WAY_POWER,
-	WAY_UNSET,
-	WAY_CO2_PPM,
-	WAY_CO2_STATUS,
-	WAY_CO2_SUPPLY,
-};
-static const struct property_how how[] = {
-	[WAY_VOLT] = {.read = read_volt},
-	[WAY_PIO] = {.read = read_pio, .write = write_pio},
-	[WAY_POWER] = {.read = read_power},
-	[WAY_UNSET] = {.write = write_unset},
-	[WAY_CO2_PPM] = {.read = read_co2_ppm},
-	[WAY_CO2_STATUS] = {.read = read_co2_status},
-	[WAY_CO2_SUPPLY] = {.read = read_co2_supply},
-};
+#define WAYS(X) \
+	X(VOLT, .read = read_volt) \
+	X(PIO, .read = read_pio, .write = write_pio) \
+	X(POWER, .read = read_power) \
+	X(UNSET, .write = write_unset) \
+	X(CO2_PPM, .read = read_co2_ppm) \
+	X(CO2_STATUS, .read = read_co2_status) \
+	X(CO2_SUPPLY, .read = read_co2_supply)
+enum { WAY_NONE, WAYS(WAY_ENUM) };
+static const struct property_how how[] = {WAYS(WAY_HOW)};
 
 #define VOLT(text, args, how_, ...) \
 	PROPERTY(text, FLOAT, VOLATILE, READ, AGGREGATE(4, LETTERS), .arg = (args), .how = (how_), \

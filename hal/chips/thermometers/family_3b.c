@@ -289,29 +289,18 @@ static AREA_NAMED(memory, "memory", .size = 128, .address_bytes = 1, .read = 0xf
 enum { OWN = SCRATCHPAD, MEMORY };
 static const struct area *const areas[] = {[OWN] = &scratchpad, [MEMORY] = &memory};
 
-enum {
-	WAY_OWN = AFTER_THERMOMETER_WAYS,
-	WAY_OWN_LIMIT,
-	WAY_FAULT,
-	WAY_FLAGS,
-	WAY_THERMOCOUPLE,
-	WAY_ADDRESS,
-	WAY_OWN_POWER,
-	WAY_OWN_TEMPRES,
-	WAY_IDENTITY
-};
-static const struct property_how how[] = {
-	THERMOMETER_WAYS,
-	[WAY_OWN] = {.read = read_temperature},
-	[WAY_OWN_LIMIT] = {.write = write_limit},
-	[WAY_FAULT] = {.read = read_fault},
-	[WAY_FLAGS] = {.read = read_flags},
-	[WAY_THERMOCOUPLE] = {.read = read_thermocouple},
-	[WAY_ADDRESS] = {.read = read_address},
-	[WAY_OWN_POWER] = {.read = read_power},
-	[WAY_OWN_TEMPRES] = {.read = read_tempres, .write = write_tempres},
-	[WAY_IDENTITY] = {.read = read_identity},
-};
+#define WAYS(X) \
+	X(OWN, .read = read_temperature) \
+	X(OWN_LIMIT, .write = write_limit) \
+	X(FAULT, .read = read_fault) \
+	X(FLAGS, .read = read_flags) \
+	X(THERMOCOUPLE, .read = read_thermocouple) \
+	X(ADDRESS, .read = read_address) \
+	X(OWN_POWER, .read = read_power) \
+	X(OWN_TEMPRES, .read = read_tempres, .write = write_tempres) \
+	X(IDENTITY, .read = read_identity)
+enum { WAY_BEFORE_OWN = AFTER_THERMOMETER_WAYS - 1, WAYS(WAY_ENUM) };
+static const struct property_how how[] = {THERMOMETER_WAYS, WAYS(WAY_HOW)};
 
 #define TEMPERATURE(text, resolution, which, decimals) \
 	PROPERTY(text, TEMPERATURE, VOLATILE, READ, .convert = (resolution), .kinds = (which), \
