@@ -12,6 +12,7 @@
 
 #include "src/memory/libows/handle.h"
 #include "src/memory/libows/map.h"
+#include "src/memory/shm/image.h"
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/word.h"
 
@@ -80,23 +81,9 @@ static bool entries_right(const struct ows_map *map)
 
 /* The sizes of our entries. A later minor version may append aligned words to one. */
 static const uint16_t entry_size[OWS_AREAS] = {
-	[OWS_AREA_RECORDS] = sizeof(struct ows_record),
-	[OWS_AREA_INFOS] = sizeof(struct ows_info_entry),
-	[OWS_AREA_NAMES] = sizeof(struct ows_name_entry),
-	[OWS_AREA_TARGETS] = sizeof(struct ows_target_entry),
-	[OWS_AREA_COUNTERS] = sizeof(struct ows_counter_entry),
-	[OWS_AREA_POOL] = 1,
-	[OWS_AREA_TEXTS] = 1,
-	[OWS_AREA_ORIGINS] = sizeof(struct ows_origin_entry),
-	[OWS_AREA_CONTROLLERS] = sizeof(struct ows_controller_entry),
-	[OWS_AREA_SHELVES] = sizeof(struct ows_shelf_entry),
-	[OWS_AREA_ALARMS] = sizeof(struct ows_journal_entry),
-	[OWS_AREA_COMMANDS] = sizeof(struct ows_journal_entry),
-	[OWS_AREA_CHANGES] = sizeof(struct ows_change_entry),
-	[OWS_AREA_DEVICES] = sizeof(struct ows_device_entry),
-	[OWS_AREA_LOG] = sizeof(struct ows_log_entry),
-	[OWS_AREA_REFUSED] = sizeof(struct ows_log_entry),
-	[OWS_AREA_NOTES] = sizeof(struct ows_log_entry),
+#define X(kind, type, member, count) [OWS_AREA_##kind] = sizeof(type),
+	IMAGE_AREAS(X)
+#undef X
 };
 
 static bool entry_fits(uint32_t kind, uint32_t size)

@@ -93,8 +93,6 @@ static uint64_t changes_of(uint64_t records)
 	return n;
 }
 
-#define AREA(entry, n) ((struct image_area){.size = sizeof(entry), .count = (n)})
-
 /*
  * Areas that came later are left out of the directory while they are empty: such an image is that
  * of the first owsd of this major version, byte for byte.
@@ -112,24 +110,10 @@ static void find_areas(const struct image_plan *plan, struct image_areas *a)
 {
 	uint64_t records = (uint64_t)plan->signal_count + 1;
 
-	a->of[OWS_AREA_RECORDS] = AREA(struct ows_record, records);
-	a->of[OWS_AREA_INFOS] = AREA(struct ows_info_entry, records);
-	a->of[OWS_AREA_NAMES] = AREA(struct ows_name_entry, records);
-	a->of[OWS_AREA_TARGETS] = AREA(struct ows_target_entry, plan->target_count);
-	a->of[OWS_AREA_COUNTERS] = AREA(struct ows_counter_entry, plan->counter_count);
-	a->of[OWS_AREA_POOL] = AREA(char, pool_bytes(plan));
-	a->of[OWS_AREA_TEXTS] = AREA(char, text_bytes(plan));
-	a->of[OWS_AREA_ORIGINS] = AREA(struct ows_origin_entry, records);
-	a->of[OWS_AREA_CONTROLLERS] = AREA(struct ows_controller_entry, OWS_CONTROLLERS);
-	a->of[OWS_AREA_SHELVES] = AREA(struct ows_shelf_entry, OWS_SHELVES);
-	a->of[OWS_AREA_ALARMS] = AREA(struct ows_journal_entry, OWS_JOURNAL);
-	a->of[OWS_AREA_COMMANDS] = AREA(struct ows_journal_entry, OWS_JOURNAL);
-	a->of[OWS_AREA_CHANGES] = AREA(struct ows_change_entry, changes_of(records));
-	a->of[OWS_AREA_DEVICES] = AREA(struct ows_device_entry, plan->device_count);
-	a->of[OWS_AREA_LOG] = AREA(struct ows_log_entry, plan->log_lines);
-	a->of[OWS_AREA_REFUSED] = AREA(struct ows_log_entry, plan->log_lines != 0);
-	a->of[OWS_AREA_NOTES] = AREA(struct ows_log_entry,
-	                             plan->log_lines ? plan->target_count : 0);
+#define X(kind, type, member, n) \
+	a->of[OWS_AREA_##kind] = (struct image_area){.size = sizeof(type), .count = (n)};
+	IMAGE_AREAS(X)
+#undef X
 	a->end = align64(sizeof(struct ows_image_header) +
 	                 area_count(a) * sizeof(struct ows_area_entry));
 	for (unsigned kind = 1; kind < OWS_AREAS; kind++) {
@@ -189,6 +173,11 @@ static void fill_header(const struct image_plan *plan, const struct image_areas 
 	};
 }
 
+static void *area_at(const struct image_areas *a, enum ows_area kind, char *base)
+{
+	return a->of[kind].count ? base + a->of[kind].off : NULL;
+}
+
 /* Areas lie one behind the other; readers find them by the directory alone. */
 static void point_into(const struct image_plan *plan, const struct image_areas *a, char *base,
                        struct image *image)
@@ -196,22 +185,10 @@ static void point_into(const struct image_plan *plan, const struct image_areas *
 	*image = (struct image){
 		.header = (void *)base,
 		.areas = (void *)(base + sizeof(struct ows_image_header)),
-		.records = (void *)(base + a->of[OWS_AREA_RECORDS].off),
-		.infos = (void *)(base + a->of[OWS_AREA_INFOS].off),
-		.names = (void *)(base + a->of[OWS_AREA_NAMES].off),
-		.targets = (void *)(base + a->of[OWS_AREA_TARGETS].off),
-		.counters = (void *)(base + a->of[OWS_AREA_COUNTERS].off),
-		.origins = (void *)(base + a->of[OWS_AREA_ORIGINS].off),
-		.controllers = (void *)(base + a->of[OWS_AREA_CONTROLLERS].off),
-		.shelves = (void *)(base + a->of[OWS_AREA_SHELVES].off),
-		.alarms = (void *)(base + a->of[OWS_AREA_ALARMS].off),
-		.commands = (void *)(base + a->of[OWS_AREA_COMMANDS].off),
-		.changes = (void *)(base + a->of[OWS_AREA_CHANGES].off),
-		.devices = (void *)(base + a->of[OWS_AREA_DEVICES].off),
-		.log = (void *)(base + a->of[OWS_AREA_LOG].off),
-		.refused = plan->log_lines ? (void *)(base + a->of[OWS_AREA_REFUSED].off) : NULL,
-		.notes = plan->log_lines ? (void *)(base + a->of[OWS_AREA_NOTES].off) : NULL,
-		.record_count = plan->signal_count + 1,
+#define X(kind, type, member, n) .member = area_at(a, OWS_AREA_##kind, base),
+		IMAGE_AREAS(X)
+#undef X
+			.record_count = plan->signal_count + 1,
 		.target_count = plan->target_count,
 		.counter_count = plan->counter_count,
 		.change_count = (uint32_t)a->of[OWS_AREA_CHANGES].count,

@@ -59,24 +59,36 @@ struct image_plan {
 	int64_t start_ns, start_wall_ns, period_ns;
 };
 
+/*
+ * The areas of an image: kind, the type of an entry, the member of struct image, and how many
+ * entries a plan has (image.c; `records` counts the signals and record 0).
+ */
+#define IMAGE_AREAS(X) \
+	X(RECORDS, struct ows_record, records, records) /* [0] is owsd */ \
+	X(INFOS, struct ows_info_entry, infos, records) \
+	X(NAMES, struct ows_name_entry, names, records) \
+	X(TARGETS, struct ows_target_entry, targets, plan->target_count) \
+	X(COUNTERS, struct ows_counter_entry, counters, plan->counter_count) \
+	X(POOL, char, pool, pool_bytes(plan)) \
+	X(TEXTS, char, texts, text_bytes(plan)) \
+	X(ORIGINS, struct ows_origin_entry, origins, records) \
+	X(CONTROLLERS, struct ows_controller_entry, controllers, OWS_CONTROLLERS) \
+	X(SHELVES, struct ows_shelf_entry, shelves, OWS_SHELVES) \
+	X(ALARMS, struct ows_journal_entry, alarms, OWS_JOURNAL) /* the journals */ \
+	X(COMMANDS, struct ows_journal_entry, commands, OWS_JOURNAL) \
+	X(CHANGES, struct ows_change_entry, changes, changes_of(records)) \
+	X(DEVICES, struct ows_device_entry, devices, plan->device_count) \
+	X(LOG, struct ows_log_entry, log, plan->log_lines) \
+	X(REFUSED, struct ows_log_entry, refused, plan->log_lines != 0) \
+	X(NOTES, struct ows_log_entry, notes, plan->log_lines ? plan->target_count : 0)
+
 /* A built image: pointers into its memory, and how many entries there are. */
 struct image {
 	struct ows_image_header *header;
-	struct ows_area_entry *areas; /* the area of a kind is [kind - 1] */
-	struct ows_record *records;   /* [0] is owsd */
-	struct ows_info_entry *infos;
-	struct ows_name_entry *names;
-	struct ows_target_entry *targets;
-	struct ows_counter_entry *counters;
-	struct ows_origin_entry *origins;
-	struct ows_controller_entry *controllers;    /* OWS_CONTROLLERS */
-	struct ows_shelf_entry *shelves;             /* OWS_SHELVES */
-	struct ows_journal_entry *alarms, *commands; /* OWS_JOURNAL each: the journals */
-	struct ows_change_entry *changes;
-	struct ows_device_entry *devices;
-	struct ows_log_entry *log;
-	struct ows_log_entry *refused; /* NULL: there is none, as there is no log */
-	struct ows_log_entry *notes;   /* likewise */
+	struct ows_area_entry *areas;              /* the area of a kind is [kind - 1] */
+#define X(kind, type, member, count) type *member; /* NULL: it has no entries */
+	IMAGE_AREAS(X)
+#undef X
 	uint32_t record_count, target_count, counter_count, change_count, device_count, log_lines;
 	char *base;
 };
