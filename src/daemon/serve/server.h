@@ -12,7 +12,6 @@
 #include "src/daemon/serve/kept.h"
 #include "src/daemon/serve/request.h"
 #include "src/daemon/serve/signals.h"
-#include "src/daemon/serve/tokens.h"
 #include "src/ground/service/budget.h"
 #include "src/ground/text/log.h"
 #include "src/public/ows_layout.h"

@@ -5,7 +5,6 @@
 
 #include "hal/owfs/frame.h"
 #include "src/daemon/serve/request.h"
-#include "src/daemon/serve/tokens.h"
 
 static uint8_t here[BUS_TOKEN], there[BUS_TOKEN];
 static struct tokens passed;
