@@ -118,8 +118,8 @@ struct ds2482_master {
 	struct gpio_output power, sleep;
 	int64_t power_off_ns;
 	/*
-	 * notice.c; link.c says which chip had been reset or changed when it was set up again. 0:
-	 * none. Errors since the last look. Env times of the next look, of the next after such a
+	 * i2c_master.c; link.c says which chip had been reset or changed when it was set up again.
+	 * 0: none. Errors since the last look. Env times of the next look, of the next after such a
 	 * change. What disturbs, whether it names programs, and when its cause was seen last.
 	 */
 	uint8_t changed;

@@ -6,3 +6,6 @@
 
 /* Scheme "i2c": over hal/ds2482/i2c_dev.h. */
 extern const struct link_master_ops ds2482_i2c_master;
+
+/* link_master_ops.trouble: at most one look a minute. */
+void ds2482_trouble(struct link_master *master, bool failed, char *text, size_t size);

@@ -11,7 +11,7 @@
 #include "hal/base/time.h"
 #include "hal/ds2482/every.h"
 #include "hal/ds2482/master.h"
-#include "hal/ds2482/notice.h"
+#include "hal/ds2482/i2c_master.h"
 #include "hal/native/native.h"
 #include "hal/sim/scenario.h"
 #include "unity.h"
