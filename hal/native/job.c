@@ -6,7 +6,7 @@
 #include "hal/base/time.h"
 #include "hal/native/answer.h"
 #include "hal/native/convert/convert.h"
-#include "hal/native/convert/simultaneous.h"
+#include "hal/native/convert/broadcast.h"
 #include "hal/native/exchange.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"

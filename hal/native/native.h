@@ -13,9 +13,8 @@
  *   touch.c    keys that touch a wire
  *   exchange.c properties read and written
  *   convert/   when thermometers convert, and what a result is worth
- *     simultaneous.c  writes to /simultaneous
  *     convert.c    one Convert T for all thermometers due on a channel, or each in turn
- *     broadcast.c  Convert T for all of a channel
+ *     broadcast.c  Convert T for all of a channel; writes to /simultaneous
  *     schedule.c   which of these is faster
  *     together.c   thermometers on several chips of the master at the same time
  *     ending.c     when a conversion ends

@@ -19,3 +19,6 @@ int broadcast_convert(struct native *native, unsigned n, bool strong, int64_t lo
 void broadcast_started(struct native *native, struct device *device, int64_t now, bool shown);
 /* It was told to convert, at now at the latest, and whether it heard is not known. */
 void broadcast_told(const struct native *native, struct device *device, int64_t now);
+
+/* A write to /simultaneous: all chips of a kind on one channel or on all convert. */
+void convert_all(struct native *native, struct job *job);
