@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The reload: puts another configuration in place of the served one, and ends what does not stay.
+ * The reload: puts another configuration in place of the served one, and ends what does not stay;
+ * what it left to do, and else has to be looked after.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -14,16 +15,20 @@
 #include "src/daemon/host/make.h"
 #include "src/daemon/host/private.h"
 #include "src/daemon/host/reload.h"
-#include "src/daemon/host/tend.h"
 #include "src/daemon/serve/serve.h"
 #include "src/ground/text/printable.h"
 #include "src/memory/control/control.h"
 #include "src/memory/shm/entries.h"
 #include "src/memory/shm/futex.h"
+#include "src/memory/shm/porter.h"
 #include "src/public/ows.h"
 
 /* The time that all buses which a reload ends may take together. */
 #define END_NS (2 * NS_PER_S)
+/* How often owsd tries what a reload could not finish. */
+#define TEND_NS NS_PER_S
+/* How often owsd logs that the image is lost. */
+#define IMAGE_LOST_NS (60 * NS_PER_S)
 
 static void pause_until_null(void *word)
 {
@@ -97,6 +102,43 @@ static bool same_listeners(const struct config_serve *a, const struct config_ser
 	return true;
 }
 
+static void report_unfinished(struct host *h, const char *why)
+{
+	if (log_rate(&h->finish_rate, ows_now()))
+		log_err(h->log, "%s: owsd tries again every second", why);
+}
+
+/*
+ * Try again what a reload could not finish after the engine had taken it; log and count it
+ * until it is done. host_tend() calls it once a second.
+ */
+static void finish_reload(struct host *h)
+{
+	bool before = h->unfinished != 0;
+	char why[512];
+
+	if (h->unshown) {
+		h->unshown = memory_show(&h->now->memory, h->log, why, sizeof(why)) != 0;
+		if (h->unshown)
+			report_unfinished(h, why);
+		else
+			control_replaced(h->control);
+	}
+	if (h->unstarted)
+		h->unstarted = host_start_workers(h->now, why, sizeof(why)) ||
+		               last_start(h->now->last) ||
+		               (!h->indicator && host_start_indicator(h, why, sizeof(why)));
+	if (h->unstarted)
+		report_unfinished(h, why);
+	__atomic_store_n(&h->unfinished, (uint32_t)h->unshown + h->unstarted, __ATOMIC_RELAXED);
+	h->finish_ns = ows_now() + TEND_NS;
+	if (h->unfinished)
+		return;
+	h->finish_rate = (struct log_rate){0};
+	if (before)
+		log_notice(h->log, "the rest of the reload is done");
+}
+
 /* Give next to the engine. From here on the reload cannot be refused any more. */
 static void exchange_serving(struct host *h, struct serving *next, const struct adoption *plan)
 {
@@ -113,7 +155,7 @@ static void exchange_serving(struct host *h, struct serving *next, const struct 
 	h->unshown = true;
 	h->unstarted =
 		false; /* the threads start only after the old ones have released the hardware */
-	host_finish_reload(h);
+	finish_reload(h);
 	if (h->serve)
 		serve_reload(h->serve, next->config, &next->memory.image, plan->ports);
 	dark = indicator_stop(h->indicator, END_NS);
@@ -123,7 +165,7 @@ static void exchange_serving(struct host *h, struct serving *next, const struct 
 	stored = end_last(h, before);
 	leave_before(h, before, end_workers(before, plan), stored, dark);
 	h->unstarted = true;
-	host_finish_reload(h);
+	finish_reload(h);
 }
 
 bool host_may_reload(const struct host *h)
@@ -174,4 +216,51 @@ int host_reload(struct host *h, struct config *config, char *why, size_t why_siz
 	}
 	adoption_free(&plan);
 	return err;
+}
+
+/*
+ * Log that the image is lost. Only a reload makes a new image, since all readers have to open it.
+ */
+static void look_for_image(struct host *h, int64_t now_ns)
+{
+	if ((h->image_lost_ns && now_ns - h->image_lost_ns < IMAGE_LOST_NS) ||
+	    !memory_image_lost(&h->now->memory))
+		return;
+	h->image_lost_ns = now_ns;
+	log_err(h->log,
+	        "%s/%s.image was removed or replaced and programs that start now do not find it: "
+	        "reload or restart owsd",
+	        h->dir->path, h->instance);
+}
+
+/* While there is none, threads of owsd do what peers can make slow. */
+static void tend_porter(struct host *h, int64_t now_ns)
+{
+	switch (porter_tend(h->porter, now_ns)) {
+	case PORTER_ENDED:
+		log_err(h->log, "the process for connections, owsd-porter, was killed: owsd starts "
+		                "it again; until then programs that connect can delay owsd");
+		return;
+	case PORTER_FAILED:
+		log_err(h->log, "the process for connections cannot be started: owsd tries again, "
+		                "each minute at last");
+		return;
+	case PORTER_IS_BACK:
+		log_notice(h->log, "the process for connections runs again (process %d)",
+		           porter_process(h->porter));
+		return;
+	case PORTER_GOES_ON:
+		return;
+	}
+}
+
+void host_tend(struct host *h)
+{
+	int64_t now_ns = ows_now();
+
+	if (h->porter)
+		tend_porter(h, now_ns);
+	if ((h->unshown || h->unstarted) && now_ns >= h->finish_ns)
+		finish_reload(h);
+	look_for_image(h, now_ns);
 }

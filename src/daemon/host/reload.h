@@ -25,3 +25,9 @@ void host_refused(struct host *host, const char *why);
  * then nothing changes. Only when host_may_reload().
  */
 int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
+
+/*
+ * The work that must not be done on the engine's thread: look whether the image is still there, and
+ * finish what a reload could not do. The supervisor calls it at least twice a second.
+ */
+void host_tend(struct host *host);

@@ -10,7 +10,6 @@
 #include "src/daemon/host/host.h"
 #include "src/daemon/host/reload.h"
 #include "src/daemon/host/target.h"
-#include "src/daemon/host/tend.h"
 #include "src/daemon/owsd/arguments.h"
 #include "src/daemon/owsd/instance.h"
 #include "src/ground/board/board.h"
