@@ -12,8 +12,6 @@
 #include "hal/chips/format.h"
 #include "hal/chips/loggers/host_clock.h"
 
-#define TEXT_ROOM 64 /* of a number or a date as text */
-
 int extension_split(const char *text, size_t len, size_t *name_len)
 {
 	size_t dot = len;
@@ -222,8 +220,7 @@ size_t text_end(const char *text, size_t len)
 	return len;
 }
 
-/* Without the blanks around it, and the end of line or of string behind it. */
-static bool copy_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
+bool text_trimmed(const char *text, size_t len, char copy[TEXT_ROOM])
 {
 	len = text_end(text, len);
 	while (len && isspace((unsigned char)*text)) {
@@ -278,7 +275,7 @@ static int parse_text(const struct property *property, int extension, const char
 {
 	char copy[TEXT_ROOM];
 
-	if (!copy_trimmed(text, len, copy)) {
+	if (!text_trimmed(text, len, copy)) {
 		/* An empty date is the present time, as in OWFS: so clocks are set by scripts. */
 		bool now = property->type == PROPERTY_DATE && text_end(text, len) == 0;
 

@@ -47,6 +47,12 @@ double format_as_number(const struct property *property, int extension, const st
 /* The length without blanks, and the end of line or of string, at the end. */
 size_t text_end(const char *text, size_t len);
 /*
+ * The text without the blanks around it, and the end of line or of string behind it. False: nothing
+ * is left, or too much for a number or a date.
+ */
+#define TEXT_ROOM 64
+bool text_trimmed(const char *text, size_t len, char copy[TEXT_ROOM]);
+/*
  * The other way. With one element of an aggregate only that element is set: the others have to be
  * in txn. -EINVAL, and txn is as before: the text is not the whole of a value in the range of the
  * property. Blanks around it and an end of line or of string behind it do not count.

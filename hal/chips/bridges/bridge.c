@@ -216,7 +216,7 @@ static int bridge_measure(struct txn *txn, const struct sensor *sensor)
 	return 0;
 }
 
-static bool is_whole_type(uint8_t type)
+bool bridge_bounded(uint8_t type)
 {
 	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
 }
@@ -238,7 +238,7 @@ static int take_result(const struct sensor *sensor, double *number)
 	if (!isfinite(*number) ||
 	    (value->ranged && (*number < value->low || *number > value->high)))
 		return -EDOM;
-	if (is_whole_type(value->type) &&
+	if (bridge_bounded(value->type) &&
 	    (*number != floor(*number) || *number < least || *number > most))
 		return -EDOM;
 	return 0;
@@ -352,7 +352,7 @@ static int compare_names_of_rows(const void *a, const void *b)
 	return strcmp(x->name, y->name);
 }
 
-int bridges_finish(struct sensor_table *table)
+void bridges_finish(struct sensor_table *table)
 {
 	for (unsigned i = 0; i < table->bridge_count; i++) {
 		struct sensor_bridge *bridge = &table->bridges[i];
@@ -367,7 +367,6 @@ int bridges_finish(struct sensor_table *table)
 		bridge->family.how_count = sizeof(how) / sizeof(how[0]);
 		bridge->table = table;
 	}
-	return 0;
 }
 
 const struct family *bridge_family(const struct sensor_table *table, const uint8_t rom[8])

@@ -4,7 +4,9 @@
 
 #include "hal/chips/bridges/sensor.h"
 
-/* What a whole number or a yesno of a table can be. */
+/* Is it a whole number or a yesno? Then its type bounds it, and anything beyond is refused. */
+bool bridge_bounded(uint8_t type);
+/* What such a one of a table can be. */
 void bridge_bounds(uint8_t type, double *least, double *most);
 /* "DS28E17"; NULL: devices with this family code are no bridges. */
 const char *bridge_type(uint8_t code);
@@ -14,7 +16,7 @@ const char *bridge_type(uint8_t code);
  */
 int bridge_place(const struct sensor_table *table, struct sensor_bridge *bridge, unsigned kind,
                  uint8_t address, const char *prefix);
-/* The table is whole: each bridge becomes a family. 0. */
-int bridges_finish(struct sensor_table *table);
+/* The table is whole: each bridge becomes a family. */
+void bridges_finish(struct sensor_table *table);
 /* NULL: the table does not name that device. */
 const struct family *bridge_family(const struct sensor_table *table, const uint8_t rom[8]);

@@ -15,8 +15,6 @@
 #define KIND_STEPS 255    /* likewise */
 #define WAIT_MAX_MS 10000 /* of one line, and of all of a sensor */
 
-#define SIZE(list) (sizeof(list) / sizeof((list)[0]))
-
 /* One more element of a growing list: list is the address of its pointer. NULL: no memory. */
 static void *grow_list(void *list, unsigned *count, size_t size)
 {
@@ -242,18 +240,12 @@ static uint8_t take_type(struct sensor_reader *r)
 	return PROPERTY_FLOAT;
 }
 
-/* Its type bounds it: anything beyond is refused. Bounds of other types are the author's. */
-static bool is_bounded(uint8_t type)
-{
-	return type == PROPERTY_UNSIGNED || type == PROPERTY_INTEGER || type == PROPERTY_YESNO;
-}
-
 /* The rest of a range beyond what the type can have could never be a value. */
 static int check_range(struct sensor_reader *r, const struct sensor_value *value)
 {
 	double least, most;
 
-	if (!is_bounded(value->type))
+	if (!bridge_bounded(value->type))
 		return 0;
 	bridge_bounds(value->type, &least, &most);
 	return value->low >= least && value->high <= most
@@ -281,7 +273,7 @@ static int read_value(struct sensor_reader *r)
 	if (found.ranged) {
 		err = reader_range(r, &found.low, &found.high);
 		err = err ? err : check_range(r, &found);
-	} else if (!err && !is_bounded(found.type))
+	} else if (!err && !bridge_bounded(found.type)) /* these bounds are the author's */
 		err = reader_fail(r,
 		                  "value %s has no range: add range LOW to HIGH, what the "
 		                  "sensor can mean",
@@ -475,7 +467,9 @@ int sensor_table_parse(struct sensor_table *table, const char *file, const char 
 	}
 	if (!err && !table->bridge_count)
 		err = end_kind(&r);
-	return err == -ENOMEM ? err : err ? -EINVAL : bridges_finish(table);
+	if (!err)
+		bridges_finish(table);
+	return !err || err == -ENOMEM ? err : -EINVAL;
 }
 
 void sensor_table_free(struct sensor_table *table)

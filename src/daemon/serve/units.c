@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Scales of temperature and pressure that a client of the served protocol asks for. */
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/format.h"
 #include "hal/owfs/frame.h"
 #include "src/daemon/serve/units.h"
 
@@ -62,20 +62,12 @@ bool units_convert(char type, uint32_t flags)
 /* Parse one element, without the blanks of its padding. */
 static int parse_element(const char *text, size_t len, double *number)
 {
-	char copy[64], *end;
+	char copy[TEXT_ROOM], *end;
 
-	while (len && isspace((unsigned char)*text)) {
-		text++;
-		len--;
-	}
-	while (len && (isspace((unsigned char)text[len - 1]) || text[len - 1] == '\0'))
-		len--;
-	if (len == 0 || len >= sizeof(copy))
+	if (!text_trimmed(text, len, copy))
 		return -EINVAL;
-	memcpy(copy, text, len);
-	copy[len] = '\0';
 	*number = strtod(copy, &end);
-	return end != copy + len || !isfinite(*number) ? -EINVAL : 0;
+	return end == copy || *end || !isfinite(*number) ? -EINVAL : 0;
 }
 
 static size_t element_length(const char *text, size_t len)
