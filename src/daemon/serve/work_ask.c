@@ -20,11 +20,6 @@ bool work_same_targets(const struct serve *s, const struct client *c)
 	return c->guest.generation == s->image->header->generation;
 }
 
-unsigned work_targets(const struct serve *s)
-{
-	return s->config->target_count;
-}
-
 static bool is_up(const struct serve *s, unsigned target)
 {
 	return word_get(&s->image->targets[target].state) == 1;
@@ -89,7 +84,7 @@ void work_device_path(struct client *c, const char *property)
 /* Skip the targets that are down, for a directory to which each target adds its part. */
 void work_next_target(struct serve *s, struct client *c)
 {
-	while (c->target < work_targets(s) && !is_up(s, c->target))
+	while (c->target < s->config->target_count && !is_up(s, c->target))
 		c->target++;
 }
 

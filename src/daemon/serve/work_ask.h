@@ -16,7 +16,6 @@ int work_path(struct serve *s, struct client *c);
 void work_device_path(struct client *c, const char *property);
 /* False: a reload went on while the engine had the request, and targets may have other numbers. */
 bool work_same_targets(const struct serve *s, const struct client *c);
-unsigned work_targets(const struct serve *s);
 /* Move c->target up to the next target that is up, for what each target has its part of. */
 void work_next_target(struct serve *s, struct client *c);
 bool work_is_directory(const struct node *node);

@@ -60,7 +60,7 @@ static bool ask_target(struct serve *s, struct client *c)
 
 	if (every) {
 		work_next_target(s, c);
-		if (c->target >= work_targets(s)) {
+		if (c->target >= s->config->target_count) {
 			if (c->worst == WORK_NOT_YET)
 				c->worst = -ENOTCONN;
 			return listed(s, c);

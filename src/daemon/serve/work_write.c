@@ -49,7 +49,7 @@ void work_write_target(struct serve *s, struct client *c)
 		return;
 	}
 	work_next_target(s, c);
-	if (c->target < work_targets(s))
+	if (c->target < s->config->target_count)
 		work_ask(s, c, STEP_WRITE_EACH, BUS_WRITE, (int)c->target, data, (uint32_t)len);
 	else
 		answer_error(s, c, c->worst == WORK_NOT_YET ? -ENOTCONN : c->worst);
@@ -178,7 +178,7 @@ void work_written(struct serve *s, struct client *c, int err)
 			return;
 		}
 		c->target++;
-		if (c->target < work_targets(s)) {
+		if (c->target < s->config->target_count) {
 			work_write_target(s, c);
 			return;
 		}
