@@ -16,7 +16,7 @@
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
 
-#define FRESH_NS (5 * NATIVE_S) /* a result serves a request for so long */
+#define FRESH_NS (5 * NS_PER_S) /* a result serves a request for so long */
 #define READ_SCRATCHPAD 0xbe
 #define SCRATCHPAD_SIZE 9
 #define TRIES 2
@@ -226,8 +226,8 @@ static bool is_ready(struct native *native, struct job *job, int64_t now, int64_
 		return false;
 	int64_t ready_ns = native->channel[*n].first.ready_ns;
 
-	if (ready_ns > now && ready_ns < *next)
-		*next = ready_ns;
+	if (ready_ns > now)
+		*next = earlier_ns(ready_ns, *next);
 	return ready_ns && ready_ns <= now && is_fresh(native, *n, now) && is_on(&path, *n) &&
 	       (!known ||
 	        (first_took_part(native, device) && !thermometer_last(device).was_read)) &&

@@ -25,15 +25,15 @@
 #include "hal/native/presence.h"
 #include "hal/native/sensors.h"
 
-#define PASS_NS (NATIVE_S * 12 / 100)
-#define PASS_TOUCH_NS (NATIVE_S / 10)
+#define PASS_NS (NS_PER_S * 12 / 100)
+#define PASS_TOUCH_NS (NS_PER_S / 10)
 #define PASS_SHARE 8     /* passes take one part in so many of the time */
 #define OVERDUE_SHARE 40 /* ... or in so many where something else is always to do, */
-#define OVERDUE_MIN_NS (NATIVE_S * 6 / 10)
-#define OVERDUE_NS NATIVE_S     /* ... but one is made after this time */
-#define ROUND_NS (5 * NATIVE_S) /* between two, */
-#define BEGIN_NS (9 * NATIVE_S) /* ... or from begin to begin of a wire where that is sooner */
-#define AGAIN_NS (NATIVE_S / 2)
+#define OVERDUE_MIN_NS (NS_PER_S * 6 / 10)
+#define OVERDUE_NS NS_PER_S     /* ... but one is made after this time */
+#define ROUND_NS (5 * NS_PER_S) /* between two, */
+#define BEGIN_NS (9 * NS_PER_S) /* ... or from begin to begin of a wire where that is sooner */
+#define AGAIN_NS (NS_PER_S / 2)
 #define MISSED_MAX 2
 #define TRIES 3
 #define TRIES_PASS 8 /* of a search for one device; a search of many goes on from there */
@@ -313,8 +313,7 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 		}
 		first = when < first ? when : first;
 	}
-	if (first < *next)
-		*next = first;
+	*next = earlier_ns(first, *next);
 	return false;
 }
 

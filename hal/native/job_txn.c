@@ -17,7 +17,7 @@ int64_t property_life_ns(const struct native *native, const struct property *pro
 	case LIFE_VOLATILE:
 		return native->volatile_ns;
 	case LIFE_SECOND:
-		return NATIVE_S;
+		return NS_PER_S;
 	}
 	return 0;
 }

@@ -2,7 +2,7 @@
 /* How much a native bus takes on at once. */
 #pragma once
 
-#include <stdint.h>
+#include "hal/base/time.h"
 
 #define NATIVE_DEPTH 400   /* requests */
 #define NATIVE_CHANNELS 64 /* links of a master */
@@ -12,6 +12,5 @@
 #define NATIVE_DOUBTS 3
 /* Of so many requests for devices that failed it is not one device that fails now and then. */
 #define NATIVE_MANY 4
-#define NATIVE_S INT64_C(1000000000)
 /* For so long the result of a conversion that no job could read serves in place of another. */
-#define NATIVE_UNREAD_NS (4 * NATIVE_S)
+#define NATIVE_UNREAD_NS (4 * NS_PER_S)

@@ -13,8 +13,8 @@
 
 #define SHARE 10 /* looks take one part in so many of the time */
 #define IDLE_SHARE 4
-#define SAVED_NS NATIVE_S
-#define TOUCH_NS (2 * NATIVE_S)
+#define SAVED_NS NS_PER_S
+#define TOUCH_NS (2 * NS_PER_S)
 #define TRIES 3
 #define MANY_MISSED 3
 #define FOUND_IN_ROW 8
@@ -48,12 +48,12 @@ static bool is_found(struct native *native, struct job *job)
  */
 static unsigned tries_of(const struct channel *channel, int64_t now)
 {
-	return channel->missed == MANY_MISSED && now - channel->missed_ns < NATIVE_S ? 1 : TRIES;
+	return channel->missed == MANY_MISSED && now - channel->missed_ns < NS_PER_S ? 1 : TRIES;
 }
 
 static void count_missed(struct channel *channel, int64_t now)
 {
-	if (now - channel->missed_ns >= NATIVE_S)
+	if (now - channel->missed_ns >= NS_PER_S)
 		channel->missed = 0;
 	channel->missed += channel->missed < MANY_MISSED;
 	channel->missed_ns = now;
@@ -248,8 +248,8 @@ static bool is_held(const struct native *native, unsigned n, int64_t now, int64_
 {
 	int64_t until = native_held(native, n, NULL, now);
 
-	if (until && until < *next)
-		*next = until;
+	if (until)
+		*next = earlier_ns(until, *next);
 	return until;
 }
 
@@ -417,7 +417,7 @@ bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
 		return true;
 	int64_t when = when_due(locate, now, idle && *next - now > locate->took_ns);
 	if (when > now) {
-		*next = when < *next ? when : *next;
+		*next = earlier_ns(when, *next);
 		return false;
 	}
 	/* Between two searches others have had the wire. */

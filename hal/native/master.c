@@ -12,12 +12,12 @@
 #include "hal/native/master.h"
 #include "hal/native/presence.h"
 
-#define PAUSE_MIN_NS (NATIVE_S / 5)
-#define PAUSE_MAX_NS (5 * NATIVE_S)
-#define PAUSE_BACK_NS (NATIVE_S / 2) /* one that was there may be plugged in again */
-#define GROW_MIN_NS NATIVE_S
-#define GROW_MAX_NS (10 * NATIVE_S)
-#define TROUBLE_NS (60 * NATIVE_S)
+#define PAUSE_MIN_NS (NS_PER_S / 5)
+#define PAUSE_MAX_NS (5 * NS_PER_S)
+#define PAUSE_BACK_NS (NS_PER_S / 2) /* one that was there may be plugged in again */
+#define GROW_MIN_NS NS_PER_S
+#define GROW_MAX_NS (10 * NS_PER_S)
+#define TROUBLE_NS (60 * NS_PER_S)
 
 /* From the first on; those before are known. */
 static void take_channels(struct native *native, unsigned first)
@@ -68,8 +68,7 @@ void master_trouble(struct native *native, int64_t now, int64_t *next)
 {
 	if (now >= native->trouble_ns)
 		look_for_trouble(native, false);
-	if (native->trouble_ns < *next)
-		*next = native->trouble_ns;
+	*next = earlier_ns(native->trouble_ns, *next);
 }
 
 /* Masters or channels that were missing are looked for again, less and less often. */
@@ -96,8 +95,7 @@ void master_grow(struct native *native, int64_t now, int64_t *next)
 			native_event(native, BUS_NOTE, NULL, -ENXIO, why);
 		native->grow_told = left && *why;
 	}
-	if (native->grow_ns < *next)
-		*next = native->grow_ns;
+	*next = earlier_ns(native->grow_ns, *next);
 }
 
 /* All channels are searched at once. */

@@ -23,14 +23,14 @@
 #include "hal/native/tables.h"
 #include "hal/native/touch.h"
 
-#define VOLATILE_NS (2 * NATIVE_S)
-#define STABLE_NS (300 * NATIVE_S)
-#define PRESENCE_NS (2 * NATIVE_S)
-#define REST_NS (NATIVE_S / 2) /* after an error */
+#define VOLATILE_NS (2 * NS_PER_S)
+#define STABLE_NS (300 * NS_PER_S)
+#define PRESENCE_NS (2 * NS_PER_S)
+#define REST_NS (NS_PER_S / 2) /* after an error */
 /* What a step may take of its own: the wire's slots and all between them. */
 #define STEP_SLOTS 4
 #define LATE_LEAST_NS (20 * TXN_MS)
-#define LATE_MOST_NS (60 * NATIVE_S)
+#define LATE_MOST_NS (60 * NS_PER_S)
 
 static const char *const count_names[COUNTS] = {
 #define X(count, name) name,
@@ -241,8 +241,8 @@ static void expire_jobs(struct native *native, int64_t now, int64_t *next)
 			           is_looked_for(job) ? locate_expired(native, job)
 			           : job->begun       ? -EINPROGRESS
 			                              : -ETIME);
-		else if (deadline < *next)
-			*next = deadline;
+		else
+			*next = earlier_ns(deadline, *next);
 	}
 }
 
@@ -308,7 +308,7 @@ static bool rest_branches(struct native *native, int64_t now, int64_t *next)
 		if (!trunk || !trunk->on || native_held(native, n, NULL, now))
 			continue;
 		if (now < native->rest_ns) {
-			*next = native->rest_ns < *next ? native->rest_ns : *next;
+			*next = earlier_ns(native->rest_ns, *next);
 			continue;
 		}
 		native_count(native, COUNT_TRANSACTIONS);

@@ -9,9 +9,9 @@
 #include "hal/native/sensors.h"
 
 /* More than the time between two searches of idle wires. A plug is seldom moved so often. */
-#define RETURN_NS (60 * NATIVE_S)
+#define RETURN_NS (60 * NS_PER_S)
 /* Busy wires are searched less often: but a plug is not moved while its device answers. */
-#define ANSWERED_NS (5 * NATIVE_S)
+#define ANSWERED_NS (5 * NS_PER_S)
 #define RETURNS 3
 
 void presence_seen(struct device *device, int64_t now)

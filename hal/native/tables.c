@@ -122,7 +122,7 @@ static int read_address(struct txn *txn)
 
 static int read_elapsed(struct txn *txn)
 {
-	int64_t seconds = (native_now(txn->native) - txn->native->up_ns) / NATIVE_S;
+	int64_t seconds = (native_now(txn->native) - txn->native->up_ns) / NS_PER_S;
 
 	txn->number[0] = (double)seconds;
 	return 0;
@@ -187,7 +187,7 @@ static int write_scale(struct txn *txn)
 
 static int read_timeout(struct txn *txn)
 {
-	int64_t seconds = *(int64_t *)member_of(txn) / NATIVE_S;
+	int64_t seconds = *(int64_t *)member_of(txn) / NS_PER_S;
 
 	txn->number[0] = (double)seconds;
 	return 0;
@@ -197,7 +197,7 @@ static int write_timeout(struct txn *txn)
 {
 	if (txn->number[0] > 1e6)
 		return -EINVAL;
-	*(int64_t *)member_of(txn) = (int64_t)txn->number[0] * NATIVE_S;
+	*(int64_t *)member_of(txn) = (int64_t)txn->number[0] * NS_PER_S;
 	return 0;
 }
 
@@ -210,7 +210,7 @@ void native_settings(struct native *native)
 	};
 
 	for (unsigned i = 0; i < NATIVE_IDLE_TIMEOUTS; i++)
-		native->idle_ns[i] = seconds[i] * NATIVE_S;
+		native->idle_ns[i] = seconds[i] * NS_PER_S;
 	native->temperature_scale = 'C';
 	memcpy(native->pressure_scale, "mbar", sizeof("mbar"));
 }

@@ -31,7 +31,7 @@
 #define MISSED_MAX 3
 #define TOUCH_NS (100 * TXN_MS)
 #define TURN_NS (250 * TXN_MS)  /* branches without a reason */
-#define QUIET_NS NATIVE_S       /* ... one that is told of by news */
+#define QUIET_NS NS_PER_S       /* ... one that is told of by news */
 #define TURN_SHARE 4            /* ... all of them take one part in so many of the time */
 #define HOLDS_NS (150 * TXN_MS) /* a branch with a key */
 #define USED_NS (100 * TXN_MS)  /* still on: not because of this search */
@@ -225,7 +225,7 @@ static bool try_channel(struct native *native, unsigned n, int64_t now, int64_t 
 		return false;
 	int64_t when = when_due(native, n, now);
 	if (when > now) {
-		*next = when < *next ? when : *next;
+		*next = earlier_ns(when, *next);
 		return false;
 	}
 	native->toucher = n;

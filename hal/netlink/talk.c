@@ -18,10 +18,10 @@
 #include "hal/wire/crc.h"
 
 /* The kernel's own search goes first, and lasts seconds on a full wire; so does ours. */
-#define REPLY_NS (15 * NATIVE_S)
-#define SEARCH_NS (60 * NATIVE_S)
-#define LOOK_NS NATIVE_S
-#define LIST_NS (2 * NATIVE_S)
+#define REPLY_NS (15 * NS_PER_S)
+#define SEARCH_NS (60 * NS_PER_S)
+#define LOOK_NS NS_PER_S
+#define LIST_NS (2 * NS_PER_S)
 
 #define LIST_MASTERS 6
 #define MASTER_COMMAND 4

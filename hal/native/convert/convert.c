@@ -23,11 +23,11 @@
 #include "hal/native/outcome.h"
 
 #define GATHER_NS (3 * TXN_MS)
-#define GATHER_MAX_NS (3 * NATIVE_S)
+#define GATHER_MAX_NS (3 * NS_PER_S)
 #define ASKED_AGAIN_NS (150 * TXN_MS)
-#define FED_MOST_NS (2 * NATIVE_S)
-#define SIMULTANEOUS_NS (2 * NATIVE_S)
-#define SINGLE_NS (60 * NATIVE_S)
+#define FED_MOST_NS (2 * NS_PER_S)
+#define SIMULTANEOUS_NS (2 * NS_PER_S)
+#define SINGLE_NS (60 * NS_PER_S)
 /* Conversions in a row that a chip did not make, as what it holds shows. */
 #define TRIES_UNHEARD 3
 
@@ -81,7 +81,7 @@ static bool is_served(const struct native *native, const struct job *job, int64_
 	struct thermometer_last last = thermometer_last(job->txn.device);
 	int64_t life = property_life_ns(native, job->property);
 	int64_t cached = life < SIMULTANEOUS_NS ? life : SIMULTANEOUS_NS;
-	int64_t fresh = job->req->prio == BUS_GUEST ? NATIVE_S : NATIVE_UNREAD_NS;
+	int64_t fresh = job->req->prio == BUS_GUEST ? NS_PER_S : NATIVE_UNREAD_NS;
 
 	return last.ends_ns && (!job->fresh || last.unread) && !job->again &&
 	       last.ends_ns + (job->fresh ? fresh : cached) > now && is_right(job);
@@ -264,7 +264,7 @@ static bool may_hold(const struct native *native, unsigned n, const struct job *
 
 		if (device == fed->txn.device || again_ns <= now || is_measuring(native, device))
 			continue;
-		*next = again_ns < *next ? again_ns : *next;
+		*next = earlier_ns(again_ns, *next);
 		return false;
 	}
 	return true;
@@ -386,8 +386,7 @@ bool convert_step(struct native *native, int64_t now, int64_t *next, struct job 
 		if (plan.preparing && channel->due_ns + GATHER_MAX_NS > now)
 			continue;
 		if (channel->due_ns + GATHER_NS > now) {
-			if (channel->due_ns + GATHER_NS < *next)
-				*next = channel->due_ns + GATHER_NS;
+			*next = earlier_ns(channel->due_ns + GATHER_NS, *next);
 			continue;
 		}
 		if (plan.parasitic && supply_ask_one(native, n))

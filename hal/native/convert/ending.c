@@ -87,7 +87,7 @@ bool ending_step(struct native *native, int64_t now, int64_t *next)
 		/* A question would end the strong pull-up of another channel of the chip. */
 		int64_t held = native_held(native, n, NULL, now);
 		if (held) {
-			*next = held < *next ? held : *next;
+			*next = earlier_ns(held, *next);
 			continue;
 		}
 		ending->asks = link_cost_of(native->channel[n].link).resets == ending->resets &&
@@ -98,7 +98,7 @@ bool ending_step(struct native *native, int64_t now, int64_t *next)
 			ending_ask(native, n);
 			return true;
 		}
-		*next = ending->next_ns < *next ? ending->next_ns : *next;
+		*next = earlier_ns(ending->next_ns, *next);
 	}
 	return false;
 }

@@ -16,7 +16,7 @@
 #define MEAN_OF 8
 #define OUTLIER 4 /* the thread did not run: no cost of the wire */
 #define GAIN 20   /* in turn takes more of the wire, and has to gain one part in so many */
-#define WINDOW_NS (4 * NATIVE_S)   /* some rounds: the share differs between reading and waiting */
+#define WINDOW_NS (4 * NS_PER_S)   /* some rounds: the share differs between reading and waiting */
 #define FINE 1000                  /* in such parts of it */
 #define LEAST_NS (WINDOW_NS / 100) /* with less nothing is gained */
 
