@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "src/ground/signal/unarmed.h"
 #include "src/ground/signal/value.h"
 #include "src/memory/libows/actor.h"
 #include "src/memory/libows/alive.h"
@@ -118,13 +119,6 @@ const char *ows_reason_text(uint8_t reason)
 	};
 
 	return reason < sizeof(texts) / sizeof(texts[0]) ? texts[reason] : "unknown";
-}
-
-static uint8_t unarmed_of(uint32_t flags)
-{
-	if (!(flags & OWS_ATTR_ALARM_UNARMED))
-		return 0;
-	return (uint8_t)(1 + ((flags & OWS_ATTR_ALARM_WHY) >> OWS_ATTR_ALARM_WHY_SHIFT));
 }
 
 int ows_alarm_state(struct ows *h, int id, struct ows_alarm_state *state)

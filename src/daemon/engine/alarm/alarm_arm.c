@@ -11,6 +11,7 @@
 #include "src/daemon/engine/alarm/alarm_item.h"
 #include "src/daemon/engine/alarm/alarm_text.h"
 #include "src/daemon/engine/retry.h"
+#include "src/ground/signal/unarmed.h"
 #include "src/ground/text/log.h"
 
 /* Another item of the same device, or this one, with the same property for its restart. */
@@ -31,7 +32,7 @@ static bool arm_anew(struct engine *e, struct alarm_item *i)
 {
 	retry_clear(&i->arming.retry);
 	i->arming.not_before_ns = 0;
-	if (!alarm_is_arming(alarm_shown(alarm_signal(e, i))))
+	if (!alarm_is_arming(unarmed_of(alarm_signal(e, i)->attrs.flags)))
 		return false;
 	alarm_hide(e, i);
 	return true;

@@ -124,13 +124,6 @@ void engine_alarm_polls(struct engine *e, struct alarm_machine *m)
 	}
 }
 
-uint8_t alarm_shown(const struct signal *s)
-{
-	if (!(s->attrs.flags & OWS_ATTR_ALARM_UNARMED))
-		return 0;
-	return (uint8_t)(1 + ((s->attrs.flags & OWS_ATTR_ALARM_WHY) >> OWS_ATTR_ALARM_WHY_SHIFT));
-}
-
 bool alarm_is_arming(uint8_t unarmed)
 {
 	return unarmed == OWS_UNARMED_SET || unarmed == OWS_UNARMED_POR;
@@ -160,7 +153,7 @@ void alarm_show(struct engine *e, struct alarm_item *i, enum ows_unarmed unarmed
                 const char *property, const char *why)
 {
 	struct signal *s = alarm_signal(e, i);
-	uint8_t before = alarm_shown(s);
+	uint8_t before = unarmed_of(s->attrs.flags);
 	bool missing = !err || err == -EBADRQC;
 
 	if (is_dead(before))
@@ -186,7 +179,7 @@ void alarm_hide(struct engine *e, struct alarm_item *i)
 {
 	struct signal *s = alarm_signal(e, i);
 
-	if (is_dead(alarm_shown(s)))
+	if (is_dead(unarmed_of(s->attrs.flags)))
 		return;
 	s->attrs.flags &= ~(uint32_t)(OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_WHY);
 	s->alarm_err = 0;
@@ -209,7 +202,7 @@ bool alarm_show_dead(struct engine *e, const struct alarm_item *i)
 
 void alarm_visit_anew(struct engine *e, struct alarm_item *i)
 {
-	uint8_t shown = alarm_shown(alarm_signal(e, i));
+	uint8_t shown = unarmed_of(alarm_signal(e, i)->attrs.flags);
 
 	i->visit = (struct alarm_visit){0};
 	if (shown && !alarm_is_arming(shown))
@@ -245,7 +238,7 @@ void alarm_granted(struct engine *e, struct alarm_item *i, uint8_t unarmed)
 
 	if (!unarmed || i->visit.refused != unarmed)
 		return;
-	if (alarm_shown(s) == unarmed)
+	if (unarmed_of(s->attrs.flags) == unarmed)
 		log_notice(e->log, "%s (%s): the alarm can be %s again", s->item->name,
 		           s->item->path, unarmed_verb(unarmed));
 	alarm_visit_anew(e, i);

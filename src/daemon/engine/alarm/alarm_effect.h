@@ -26,9 +26,10 @@ void engine_alarm_polled(struct engine *e, struct alarm_item *item);
 /* The same of all items: they are ordinary inputs. */
 void engine_alarm_polls(struct engine *e, struct alarm_machine *m);
 
-/* Why the item is shown not to come, as enum ows_unarmed; 0: it is not. */
-uint8_t alarm_shown(const struct signal *s);
-/* Is that of arming, not of a visit (the reads of PorAlarm and LatchAlarm, ResetLatch)? */
+/*
+ * Is what the item is shown not to come for, as unarmed_of(), of arming, not of a visit (the reads
+ * of PorAlarm and LatchAlarm, ResetLatch)?
+ */
 bool alarm_is_arming(uint8_t unarmed);
 /*
  * Show that what is asked for property fails with err: in the image, and if that is new in the log

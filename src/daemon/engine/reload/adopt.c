@@ -24,6 +24,7 @@
 #include "src/daemon/engine/scaling.h"
 #include "src/daemon/engine/schedule.h"
 #include "src/daemon/engine/state.h"
+#include "src/ground/signal/unarmed.h"
 #include "src/memory/shm/entries.h"
 #include "src/memory/shm/shelves.h"
 
@@ -340,7 +341,8 @@ static void take_alarm(struct engine *e, struct alarm_item *item, const struct e
 	}
 	if (arms)
 		item->arming = was->arming;
-	if (dead || !(alarm_is_arming(alarm_shown(&old->table.signals[before])) ? arms : visits))
+	if (dead ||
+	    !(alarm_is_arming(unarmed_of(old->table.signals[before].attrs.flags)) ? arms : visits))
 		return;
 	s->attrs.flags |= old->table.signals[before].attrs.flags &
 	                  (OWS_ATTR_ALARM_UNARMED | OWS_ATTR_ALARM_WHY);
