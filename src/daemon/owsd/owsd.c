@@ -15,7 +15,6 @@
 #include "src/ground/board/board.h"
 #include "src/ground/board/look.h"
 #include "src/ground/board/report.h"
-#include "src/ground/service/heap.h"
 #include "src/ground/service/notify.h"
 #include "src/ground/service/resident.h"
 #include "src/ground/service/streams.h"

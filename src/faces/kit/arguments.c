@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "src/faces/kit/arguments.h"
-#include "src/ground/service/heap.h"
+#include "src/ground/service/resident.h"
 #include "src/ground/service/streams.h"
 #include "src/ground/text/printable.h"
 #include "src/ground/text/refused.h"

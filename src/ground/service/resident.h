@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a program keeps mapped of its own code. */
+/* What a program that runs for months keeps of memory: of its own code, and by malloc. */
 #pragma once
 
 /*
@@ -11,3 +11,9 @@
  * is over.
  */
 void resident_drop_start(void);
+
+/*
+ * malloc gives back what was freed. Call it first in main(), before a thread or an allocation. With
+ * another libc it does nothing.
+ */
+void heap_give_back(void);

@@ -9,7 +9,7 @@
 
 #include "unity.h"
 
-#include "src/ground/service/heap.h"
+#include "src/ground/service/resident.h"
 
 #define LARGE (1 << 20)
 
