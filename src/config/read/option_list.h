@@ -83,7 +83,7 @@ OPTION(SAFE_VALUE, "SafeValue", ITEM, TEXT, safe_text, HAS(config_item, has_safe
 OPTION(SAFE_DELAY, "SafeDelay", ITEM, SECONDS, safe_delay_ns, HAS(config_item, has_safe_delay),
        RANGE(0, DAY),
        .help = "how long SafeValue waits for a control program that is lost, seconds")
-OPTION(START, "Start", ITEM, TEXT, start, .check = text_is_start, .preset = "init", .quiet = true,
+OPTION(START, "Start", ITEM, TEXT, start, .words = "init or last", .preset = "init", .quiet = true,
        .help = "what an output begins with: init (InitValue) or last (as it was)")
 OPTION(CONFIRM, "Confirm", ITEM, FLAG, confirm, .preset = "off", .quiet = true,
        .help = "a person is asked once more before a set by hand")
@@ -216,7 +216,7 @@ OPTION(NOTIFY_COMMAND, "Command", NOTIFY, TEXT, command, .check = text_is_path,
        .help = "program that is run with title and text of a message")
 OPTION(NOTIFY_SIGNALS, "Signals", NOTIFY, TEXT, signals, .preset = "*",
        .help = "patterns of the signals that count, with commas; !PATTERN: not these")
-OPTION(NOTIFY_LEAST, "Least", NOTIFY, TEXT, least, .check = text_is_severity,
+OPTION(NOTIFY_LEAST, "Least", NOTIFY, TEXT, least, .words = "warning or critical",
        .preset = "warning", .help = "least severity that is told: warning or critical")
 OPTION(NOTIFY_RETURNS, "Returns", NOTIFY, FLAG, returns, .preset = "off",
        .help = "tell also that an alarm has returned")
@@ -268,7 +268,7 @@ OPTION(MQTT_CERT_FILE, "CertFile", MQTT, TEXT, cert_file, .check = text_is_file,
        .help = "certificate towards the broker, likewise")
 OPTION(MQTT_KEY_FILE, "KeyFile", MQTT, TEXT, key_file, .check = text_is_file,
        .help = "key of that certificate, likewise")
-OPTION(MQTT_PROTOCOL, "Protocol", MQTT, TEXT, protocol, .check = text_is_protocol, .preset = "5",
+OPTION(MQTT_PROTOCOL, "Protocol", MQTT, TEXT, protocol, .words = "5 or 3.1.1", .preset = "5",
        .help = "version of MQTT to begin with: 5 or 3.1.1")
 OPTION(MQTT_NODE, "Node", MQTT, TEXT, node, .check = text_is_name,
        .help = "name of this machine and instance in topics")
@@ -295,9 +295,9 @@ OPTION(MODBUS_LISTEN, "Listen", MODBUS, TEXT, listen, .needed = "127.0.0.1:502",
        .help = "addresses where Modbus TCP is served")
 OPTION(MODBUS_UNIT_ID, "UnitId", MODBUS, COUNT, unit, RANGE(0, 247), .preset = "0",
        .help = "the unit that answers; 0: every one")
-OPTION(MODBUS_WORD_ORDER, "WordOrder", MODBUS, TEXT, word_order, .check = text_is_word_order,
+OPTION(MODBUS_WORD_ORDER, "WordOrder", MODBUS, TEXT, word_order, .words = "big or little",
        .preset = "big", .help = "which register of a number comes first: big or little end")
-OPTION(MODBUS_BAD_VALUE, "BadValue", MODBUS, TEXT, bad_value, .check = text_is_bad_value,
+OPTION(MODBUS_BAD_VALUE, "BadValue", MODBUS, TEXT, bad_value, .words = "nan or exception",
        .preset = "nan", .help = "what is read in place of a value that is not good: nan or exception")
 OPTION(MODBUS_DECIMALS, "Decimals", MODBUS, COUNT, decimals, RANGE(0, 6), .preset = "1",
        .help = "digits after the point that the whole numbers of a value have")

@@ -188,12 +188,26 @@ static bool is_any(const struct option_def *def)
 	return def->least >= def->most;
 }
 
+static bool is_word_of(const char *words, const char *text)
+{
+	size_t len = strlen(text);
+
+	while (strcspn(words, " ") != len || strncmp(words, text, len) != 0) {
+		words = strstr(words, " or ");
+		if (!words)
+			return false;
+		words += strlen(" or ");
+	}
+	return true;
+}
+
 static bool parse_kind(const struct option_def *def, const char *text, double *number)
 {
 	int type;
 
 	switch (def->kind) {
 	case OPTION_TEXT:
+		return !def->words || is_word_of(def->words, text);
 	case OPTION_BLOCK:
 		return true;
 	case OPTION_COUNT:
@@ -248,6 +262,8 @@ static void report_expected(const struct option_def *def, const struct rio_node 
 		expected = "input or output";
 		break;
 	case OPTION_TEXT:
+		expected = def->words;
+		break;
 	case OPTION_BLOCK:
 		return;
 	}

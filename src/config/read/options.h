@@ -59,6 +59,7 @@ struct option_def {
 	size_t has, at; /* of the bool that it is given, of its config_spot; 0: there is none */
 	enum option_place inside; /* of a block that stands once: the place of its own keys */
 	text_check *check;        /* of a text; NULL: it may be any */
+	const char *words;        /* of a text that is one of these, "init or last"; NULL: other */
 	const char *needed;       /* an example of what a block cannot be without; NULL: it can */
 	const char *preset;       /* the default as it would be written; NULL: none */
 	const char *help;         /* one line */

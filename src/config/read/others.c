@@ -6,7 +6,6 @@
 #include "src/config/read/build.h"
 #include "src/config/read/others.h"
 #include "src/config/read/texts.h"
-#include "src/ground/signal/utf8.h"
 
 #define BLANKS " \t"
 #define SOCKET_MAX 107 /* bytes of a path that the kernel takes */
@@ -42,16 +41,6 @@ static bool copy(struct word word, char *to, size_t size)
 		return false;
 	memcpy(to, word.at, word.len);
 	to[word.len] = '\0';
-	return true;
-}
-
-static bool is_name(const char *name)
-{
-	size_t left = strlen(name);
-
-	while (left)
-		if (utf8_disturbs(utf8_next(&name, &left)))
-			return false;
 	return true;
 }
 
@@ -123,7 +112,7 @@ const char *other_parse(const char *text, size_t len, struct other_place *place)
 	*place = (struct other_place){0};
 	if (n < 2 || n > WORDS)
 		return "expected NAME ADDRESS, or NAME ADDRESS PAGE";
-	if (!copy(words[0], place->name, sizeof(place->name)) || !is_name(place->name))
+	if (!copy(words[0], place->name, sizeof(place->name)) || text_is_line(place->name))
 		return "expected a name of at most 63 bytes, in UTF-8";
 	address = words[1];
 	if (address.len >= strlen(https) && !memcmp(address.at, https, strlen(https)))

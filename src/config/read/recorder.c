@@ -26,9 +26,8 @@ static const struct {
 	[WORD_INTERVAL] = {"interval", DAY},
 };
 
-static int refuse(char *why, size_t size, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
-static int refuse(char *why, size_t size, const char *format, ...)
+static int __attribute__((format(printf, 3, 4)))
+refuse(char *why, size_t size, const char *format, ...)
 {
 	va_list args;
 

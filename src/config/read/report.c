@@ -11,10 +11,9 @@
 
 #define MESSAGE_MAX (PRINTABLE_LINE + 300)
 
-static void put_line(struct config_report *report, struct rio_position position, bool is_error,
-                     const char *format, va_list args) __attribute__((format(printf, 4, 0)));
-static void put_line(struct config_report *report, struct rio_position position, bool is_error,
-                     const char *format, va_list args)
+static void __attribute__((format(printf, 4, 0)))
+put_line(struct config_report *report, struct rio_position position, bool is_error,
+         const char *format, va_list args)
 {
 	unsigned *count = is_error ? &report->errors : &report->warnings;
 	const char *kind = is_error ? "error" : "warning";

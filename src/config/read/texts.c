@@ -111,13 +111,6 @@ const char *text_is_fields(const char *text)
 	return why;
 }
 
-const char *text_is_severity(const char *text)
-{
-	return !strcmp(text, "warning") || !strcmp(text, "critical")
-	               ? NULL
-	               : "expected warning or critical";
-}
-
 static bool take_minutes(const char *text, unsigned *minutes)
 {
 	static const char digits[] = "0123456789";
@@ -193,11 +186,6 @@ const char *text_is_date(const char *text)
 	               : "expected a date such as \"2026-11-22\"";
 }
 
-const char *text_is_start(const char *text)
-{
-	return !strcmp(text, "init") || !strcmp(text, "last") ? NULL : "expected init or last";
-}
-
 const char *text_is_class(const char *text)
 {
 	return is_of(text, "abcdefghijklmnopqrstuvwxyz0123456789_", CLASS_MAX_BYTES)
@@ -228,31 +216,9 @@ const char *text_is_profile(const char *profile)
 	return "expected one of" MQTT_PROFILES(MQTT_PROFILE_WORD);
 }
 
-const char *text_is_protocol(const char *protocol)
-{
-	return !strcmp(protocol, "5") || !strcmp(protocol, "3.1.1") ? NULL : "expected 5 or 3.1.1";
-}
-
 const char *text_is_identity(const char *text)
 {
-	size_t left = strlen(text);
-	bool ok = *text == '/' && left <= LONG_MAX_BYTES;
-
-	while (ok && left) {
-		int32_t code = utf8_next(&text, &left);
-
-		ok = code >= 0 && !utf8_disturbs(code);
-	}
-	return ok ? NULL : "expected the path that the signal had, such as /28.FF01/temperature";
-}
-
-const char *text_is_word_order(const char *text)
-{
-	return !strcmp(text, "big") || !strcmp(text, "little") ? NULL : "expected big or little";
-}
-
-const char *text_is_bad_value(const char *text)
-{
-	return !strcmp(text, "nan") || !strcmp(text, "exception") ? NULL
-	                                                          : "expected nan or exception";
+	return *text == '/' && !text_is_line(text)
+	               ? NULL
+	               : "expected the path that the signal had, such as /28.FF01/temperature";
 }
