@@ -112,22 +112,29 @@ static void print_elements(const struct property *property, char text[PROPERTY_N
 		snprintf(text + n, PROPERTY_NEAREST - (size_t)n, " to %s%s", name, to);
 }
 
+/* The family that the tables have for the device in path; NULL: none. */
+static const struct family *family_at(const char *path, struct path *split)
+{
+	const struct family *family;
+
+	if (path_split(path, strlen(path), split) || !split->has_rom || !split->property.len)
+		return NULL;
+	family = family_of(split->rom[0]);
+	return family->code == split->rom[0] ? family : NULL;
+}
+
 struct path_property property_look(const char *path)
 {
 	struct path_property found = {
 		.exists = true, .readable = true, .writable = true, .exact = true};
 	char name[PATH_LEN_MAX + 1], *dot;
 	const struct property *property;
-	const struct family *family;
 	struct path split;
+	const struct family *family = family_at(path, &split);
 	int extension;
 	size_t len;
 
-	if (path_split(path, strlen(path), &split) || !split.has_rom || !split.property.len ||
-	    split.property.len >= sizeof(name))
-		return found;
-	family = family_of(split.rom[0]);
-	if (family->code != split.rom[0])
+	if (!family || split.property.len >= sizeof(name))
 		return found;
 	found.type = family->type;
 	memcpy(name, split.property.text, split.property.len);
@@ -158,17 +165,6 @@ struct path_property property_look(const char *path)
 }
 
 /* --- What alarms ask of a property ------------------------------------------------------------ */
-
-/* The family that the tables have for the device in path; NULL: none. */
-static const struct family *family_at(const char *path, struct path *split)
-{
-	const struct family *family;
-
-	if (path_split(path, strlen(path), split) || !split->has_rom || !split->property.len)
-		return NULL;
-	family = family_of(split->rom[0]);
-	return family->code == split->rom[0] ? family : NULL;
-}
 
 /* How many characters both begin with. */
 static size_t common(const char *a, const struct path_slice *b)
