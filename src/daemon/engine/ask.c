@@ -183,8 +183,7 @@ void lane_show_reads(struct lane *lane)
 			continue;
 		slot->shown = true;
 		s = &lane->engine->table.signals[slot->row];
-		if (s->sample.tried_ns < slot->begun_ns)
-			s->sample.tried_ns = slot->begun_ns;
+		s->sample.tried_ns = later_ns(s->sample.tried_ns, slot->begun_ns);
 		engine_publish(lane->engine, s);
 	}
 }

@@ -64,8 +64,7 @@ static void complete_request(struct lane *lane, struct slot *slot, const struct 
 	}
 	s = slot_signal(lane, slot);
 	/* a write of the signal may have begun since */
-	if (s->sample.tried_ns < slot->begun_ns)
-		s->sample.tried_ns = slot->begun_ns;
+	s->sample.tried_ns = later_ns(s->sample.tried_ns, slot->begun_ns);
 	s->attrs.transactions += counts;
 	slot_leaves_signal(lane, slot);
 	apply_answer(lane, slot, answer);

@@ -54,8 +54,7 @@ void client_enter(struct serve *s, struct client *c, enum client_state state)
 {
 	c->state = (uint8_t)state;
 	c->since_ns = c->tick_ns = s->now_ns;
-	if (limit_of(c) < s->look_ns)
-		s->look_ns = limit_of(c);
+	s->look_ns = earlier_ns(s->look_ns, limit_of(c));
 }
 
 void client_open(struct serve *s, int fd, const struct listener *from,
@@ -222,8 +221,7 @@ bool client_evict(struct serve *s)
 	if (!oldest)
 		return false;
 	if (s->now_ns - oldest->active_ns < EVICT_NS) {
-		if (oldest->active_ns + EVICT_NS < s->look_ns)
-			s->look_ns = oldest->active_ns + EVICT_NS;
+		s->look_ns = earlier_ns(s->look_ns, oldest->active_ns + EVICT_NS);
 		return false;
 	}
 	client_close(s, oldest);
@@ -527,8 +525,7 @@ void clients_look(struct serve *s)
 		if (c->state == CLIENT_APPLYING && s->now_ns + APPLY_LOOK_NS < next)
 			next = s->now_ns + APPLY_LOOK_NS;
 		client_look(s, c);
-		if (limit_of(c) < next)
-			next = limit_of(c);
+		next = earlier_ns(next, limit_of(c));
 	}
 	s->look_ns = next;
 	/* one of the clients may be idle for long enough by now */

@@ -162,8 +162,7 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
 	if (m->state != NOT_USED || m->list.polls)
 		return;
 	m->state = alarm_next(NOT_USED, FACT_ITEMS)->next;
-	if (m->list.next_ns < now_ns)
-		m->list.next_ns = now_ns;
+	m->list.next_ns = later_ns(m->list.next_ns, now_ns);
 }
 
 bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item)
