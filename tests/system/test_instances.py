@@ -133,7 +133,7 @@ def test_neighbours_whose_names_begin_alike_stay(scene):
     other = start(scene, name=ended.name + ".image")
     scene.names.append(other.name)
     before = files(other.name)
-    for suffix in ("image.new", "command.new"):
+    for suffix in ("image.new", "force.new"):
         with open(owsdtest.segment(ended.name, suffix), "w", encoding="ascii"):
             pass
     assert scene.owsctl(None, "remove", ended.name).returncode == 0

@@ -37,7 +37,7 @@ static bool belongs_to_another(const struct stat *st)
 const char *segment_hint(const struct shm_dir *dir, const char *instance, int err,
                          char text[SEGMENT_HINT])
 {
-	static const char *const kinds[] = {"lock", "image", "command", "force"};
+	static const char *const kinds[] = {"lock", "image", "force"};
 	char name[SEGMENT_FILE], user[OWNER_NAME];
 	struct stat st;
 

@@ -86,7 +86,7 @@ void remains_free(struct remains *remains)
 
 /* A start that was killed leaves .new files. */
 static const char *const others[] = {
-	"image", "command", "force", "control", "sock", "image.new", "command.new", "force.new",
+	"image", "force", "control", "sock", "image.new", "force.new",
 };
 #define OTHERS (sizeof(others) / sizeof(others[0]))
 

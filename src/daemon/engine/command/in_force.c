@@ -223,8 +223,7 @@ static uint32_t in_force_await(struct engine *e, const struct force_left *left, 
 	e->controllers[at] = (struct known_controller){
 		.is = CONTROLLER_AWAITED,
 		.as.who = was.who,
-		/* owsd before 0.10 knew no maximum */
-		.period_ms = was.period_ms < OWS_BEAT_MOST_MS ? was.period_ms : OWS_BEAT_MOST_MS,
+		.period_ms = was.period_ms,
 		.heard_ns = engine_awake_ns(e),
 		.joined_ns = e->time.now_ns,
 	};
