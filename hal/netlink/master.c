@@ -6,7 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "hal/netlink/master.h"
+#include "hal/native/native.h"
+#include "hal/netlink/run.h"
 #include "hal/netlink/search.h"
 #include "hal/w1/master.h"
 
@@ -85,7 +86,8 @@ static const struct link_ops w1_netlink_link_ops = {
 
 static const char word[] = "netlink";
 
-bool w1_is_netlink(const char *where)
+/* Is it "netlink", "netlink/...", of which this bus is? */
+static bool is_netlink(const char *where)
 {
 	size_t n = sizeof(word) - 1;
 
@@ -96,6 +98,8 @@ static bool has_master(void *ctx, uint32_t master)
 {
 	return w1_master_has(((const struct w1_netlink *)ctx)->sysfs, master);
 }
+
+static const struct link_master_ops netlink_master;
 
 /* Behind the word and a slash: what target w1 takes. */
 static int netlink_create(const char *where, const struct bus_env *env, struct link_master **out,
@@ -111,7 +115,7 @@ static int netlink_create(const char *where, const struct bus_env *env, struct l
 		free(netlink);
 		return err;
 	}
-	netlink->master = (struct link_master){.ops = &w1_netlink_master, .env = env};
+	netlink->master = (struct link_master){.ops = &netlink_master, .env = env};
 	netlink->talk = (struct w1_talk){
 		.env = env, .has_master = has_master, .ctx = netlink, .fd = -1};
 	*out = &netlink->master;
@@ -289,7 +293,7 @@ static void netlink_master_cost(const struct link_master *base, struct link_mast
 		.syscalls = ((const struct w1_netlink *)base)->talk.syscalls};
 }
 
-const struct link_master_ops w1_netlink_master = {
+static const struct link_master_ops netlink_master = {
 	.create = netlink_create,
 	.open = open_masters,
 	.grow = netlink_grow,
@@ -300,4 +304,39 @@ const struct link_master_ops w1_netlink_master = {
 	.cost = netlink_master_cost,
 	.destroy = netlink_destroy,
 	.slow = true,
+};
+
+/* --- The buses of scheme "w1": over netlink if the target says so, else over sysfs ----------- */
+
+static const struct bus_ops netlink_bus = {
+	.scheme = "w1",
+	.summary = "1-Wire devices on the kernel's masters (netlink)",
+	NATIVE_BUS_SLOTS,
+};
+
+static int netlink_bus_create(const char *where, const struct bus_env *env, struct bus **bus,
+                              char *why, size_t why_size)
+{
+	if (is_netlink(where))
+		return native_create(&netlink_bus, &netlink_master, where, env, bus, why, why_size);
+	return w1_sysfs_bus.create(where, env, bus, why, why_size);
+}
+
+static const struct bus_look looks[] = {
+	{.begin = "w1_bus_master",
+         .root = "/sys/bus/w1/devices/",
+         .remedy = "ls /sys/bus/w1/devices lists the masters"},
+	{.after = "netlink/",
+         .begin = "w1_bus_master",
+         .root = "/sys/bus/w1/devices/",
+         .remedy = "ls /sys/bus/w1/devices lists the masters"},
+	{0},
+};
+
+const struct bus_ops w1_bus = {
+	.scheme = "w1",
+	.summary = "1-Wire devices of the kernel's drivers (sysfs)",
+	.create = netlink_bus_create,
+	.caches = "netlink",
+	.looks = looks,
 };

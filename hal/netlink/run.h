@@ -3,9 +3,8 @@
  * The target "w1:netlink": the kernel's 1-Wire masters as links, over the netlink connector. The
  * parts, from the top down:
  *
- *   bus.c     the target "w1" of both, masters that come later
- *   master.c  the masters there are; sysfs in place of a refused netlink; one master as a link:
- *             each part is one request
+ *   master.c  the target "w1" of both; the masters there are, and those that come later; sysfs in
+ *             place of a refused netlink; one master as a link: each part is one request
  *   search.c  searches, made of slots; their direction is chosen before
  *   run.c     a request of a link, and the errno that its reply means
  *   talk.c    the socket; requests of several commands and their replies
@@ -13,6 +12,8 @@
  * Wire format and what replies mean: the kernel's Documentation/w1/w1-netlink.rst, and seen on
  * Linux 6.1. The kernel carries out the commands of one request with the master's bus locked, so
  * that neither its own search nor another program comes between.
+ *
+ * Room hal/netlink: the masters of the kernel, by netlink.
  */
 #pragma once
 

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "hal/native/state.h"
-#include "hal/netlink/master.h"
+#include "hal/netlink/run.h"
 #include "hal/netlink/talk.h"
 #include "hal/owfs/path.h"
 #include "tests/fuzz/bus_host.h"
