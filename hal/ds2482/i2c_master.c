@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "hal/base/rivals.h"
 #include "hal/base/time.h"
@@ -18,7 +19,9 @@
 #include "hal/ds2482/look.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
+#include "hal/native/native.h"
 
+#define I2C_MAJOR 89 /* Linux Documentation/admin-guide/devices.txt */
 #define LOOK_NS (60 * NS_PER_S)
 #define QUIET_NS (600 * NS_PER_S) /* so long after its last sign, what was not seen has gone */
 /* So many errors between two looks are more than noise now and then. */
@@ -220,4 +223,30 @@ const struct link_master_ops ds2482_i2c_master = {
 	.channel = ds2482_channel,
 	.cost = ds2482_cost,
 	.destroy = ds2482_destroy,
+};
+
+static const struct bus_look looks[] = {
+	{.begin = "/",
+         .root = "",
+         .type = S_IFCHR,
+         .major = I2C_MAJOR,
+         .wrong = "no I2C adapter: ls /dev/i2c-* lists them",
+         .remedy = "ls /dev/i2c-* lists the adapters, owsd --board names what is missing"},
+	{0},
+};
+
+static int i2c_bus_create(const char *where, const struct bus_env *env, struct bus **bus, char *why,
+                          size_t why_size)
+{
+	return native_create(&i2c_bus, &ds2482_i2c_master, where, env, bus, why, why_size);
+}
+
+const struct bus_ops i2c_bus = {
+	.scheme = "i2c",
+	.summary = "1-Wire devices on DS2482-100, -101, -800, DS2483 or DS2484",
+	.create = i2c_bus_create,
+	.caches = "",
+	.board_advice = true,
+	.looks = looks,
+	NATIVE_BUS_SLOTS,
 };
