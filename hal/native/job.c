@@ -5,8 +5,8 @@
 
 #include "hal/base/time.h"
 #include "hal/native/answer.h"
-#include "hal/native/convert/convert.h"
 #include "hal/native/convert/broadcast.h"
+#include "hal/native/convert/convert.h"
 #include "hal/native/exchange.h"
 #include "hal/native/hunt.h"
 #include "hal/native/job.h"
@@ -15,7 +15,7 @@
 #include "hal/native/locate.h"
 #include "hal/native/outcome.h"
 #include "hal/native/resolve.h"
-#include "hal/native/structure.h"
+#include "hal/native/tables.h"
 
 static bool is_away(const struct native *native, const struct device *device)
 {

@@ -24,8 +24,7 @@
  *   answer.c   answers, and what the cache keeps of them
  *   job_txn.c  the transactions of a request
  *   listing.c  directories
- *   structure.c  /structure
- *   tables.c   the directories that belong to no device: settings, statistics, system and so on
+ *   tables.c   the directories that belong to no device: settings, statistics, /structure and so on
  *   branches.c the branches of couplers as channels
  *   presence.c devices found, lost, restarted
  *   sensors.c  the file that names the sensors behind bridges

@@ -10,7 +10,6 @@
 #include "hal/native/branches.h"
 #include "hal/native/resolve.h"
 #include "hal/native/sensors.h"
-#include "hal/native/structure.h"
 #include "hal/native/tables.h"
 
 static bool slice_starts(struct path_slice slice, const char *word)

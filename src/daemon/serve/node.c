@@ -9,7 +9,6 @@
 
 #include "hal/chips/find.h"
 #include "hal/chips/format.h"
-#include "hal/native/structure.h"
 #include "hal/native/tables.h"
 #include "src/daemon/serve/node.h"
 

@@ -6,7 +6,7 @@
 
 #include "hal/chips/field.h"
 #include "hal/chips/find.h"
-#include "hal/native/structure.h"
+#include "hal/native/tables.h"
 #include "unity.h"
 
 #include "hal/chips/family.h"
