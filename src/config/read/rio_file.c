@@ -8,46 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/base/file.h"
 #include "src/config/read/rio.h"
 #include "src/config/read/rio_file.h"
-
-/* One byte more than is allowed, so that a longer file is recognised. */
-#define ROOM_MAX ((size_t)RIO_FILE_MAX + 1)
-
-/* NULL: *err is why. */
-static char *read_whole(int fd, size_t *len, int *err)
-{
-	size_t room = 64 * 1024, used = 0;
-	char *data = malloc(room + 1), *more;
-	ssize_t n;
-
-	*err = -ENOMEM;
-	while (data) {
-		n = read(fd, data + used, room - used);
-		if (n < 0 && errno == EINTR)
-			continue;
-		if (n < 0) {
-			*err = -errno;
-			free(data);
-			return NULL;
-		}
-		used += (size_t)n;
-		if (n == 0 || used == ROOM_MAX)
-			break;
-		if (used < room)
-			continue;
-		room = room > ROOM_MAX / 2 ? ROOM_MAX : room * 2;
-		more = realloc(data, room + 1);
-		if (!more)
-			free(data);
-		data = more;
-	}
-	if (!data)
-		return NULL;
-	data[used] = '\0';
-	*len = used;
-	return data;
-}
 
 /* Is the text UTF-16, as some editors save files, with or without a byte order mark? */
 static bool is_utf16(const char *text, size_t len)
@@ -130,7 +93,7 @@ int rio_read(const char *file, struct config_report *report, char **text, size_t
 	*text = NULL;
 	if (fd < 0)
 		return fd;
-	*text = read_whole(fd, len, &err);
+	*text = file_whole(fd, RIO_FILE_MAX, len, &err);
 	close(fd);
 	if (!*text)
 		return cannot_read(report, position, err);

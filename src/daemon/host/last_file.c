@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "hal/base/file.h"
 #include "src/config/edit/replace.h"
 #include "src/daemon/host/last_file.h"
 #include "src/memory/shm/dir.h"
@@ -74,22 +75,9 @@ static int load_file(int directory, const char *name, char **text, size_t *size)
 		err = -errno;
 	else if (!S_ISREG(st.st_mode) || (uint64_t)st.st_size > LAST_MAX)
 		err = -EBADMSG;
-	*text = err ? NULL : malloc((size_t)st.st_size + 1);
-	if (!err && !*text)
-		err = -ENOMEM;
-	while (!err && *size < (size_t)st.st_size) {
-		ssize_t got = read(fd, *text + *size, (size_t)st.st_size - *size);
-
-		if (got <= 0)
-			err = got < 0 ? -errno : -EBADMSG;
-		else
-			*size += (size_t)got;
-	}
+	else
+		*text = file_whole(fd, LAST_MAX, size, &err);
 	close(fd);
-	if (err) {
-		free(*text);
-		*text = NULL;
-	}
 	return err;
 }
 
