@@ -8,6 +8,8 @@
  */
 #pragma once
 
+#include <stddef.h>
+
 #include "hal/gpio/api.h"
 
 /* The library of this build, or its substitute, which a test sets before any thread starts. */
