@@ -204,7 +204,7 @@ static void give_back(const struct usb_place *place)
 
 	if (fd < 0)
 		return;
-	(void)ioctl(fd, USBDEVFS_IOCTL, &connect);
+	(void)ioctl(fd, (int)USBDEVFS_IOCTL, &connect); /* musl takes an int */
 	close(fd);
 }
 

@@ -176,7 +176,7 @@ static int add_behind(struct rio **rio, const struct rio_node *block, const stru
                       const char *lines)
 {
 	char *text = NULL;
-	size_t at, end;
+	size_t at = 0, end = 0;
 	int err;
 
 	if (!after || begins_line(*rio, after)) {
