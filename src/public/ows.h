@@ -185,7 +185,7 @@ int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
 int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
 int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp);
 /*
- * n values with one ring. Stops at the first error; returns how many were set, or the error.
+ * All n values with one ring; none of them if one is refused. Errors as ows_set().
  */
 int ows_set_many(struct ows *h, const int *ids, const double *values, int n);
 

@@ -174,28 +174,34 @@ int ows_set_integer(struct ows *h, int id, int64_t number, uint32_t *stamp)
 	return err ? err : put_checked(h, e, value, stamp);
 }
 
-int ows_set_many(struct ows *h, const int *ids, const double *values, int n)
+/* As set, or only whether each may be. */
+static int many(struct ows *h, const int *ids, const double *values, int n, bool really)
 {
 	const struct ows_id *e;
-	int done, err = n > 0 ? command_ready(h) : 0, rung;
 	int64_t value;
+	int err = 0;
 
-	if (err)
-		return err;
-	for (done = 0; done < n; done++) {
-		err = check_id(h, ids[done], &e);
+	for (int i = 0; i < n && !err; i++) {
+		err = check_id(h, ids[i], &e);
 		if (!err)
-			err = value_set_double(id_type(h, e), values[done], &value);
+			err = value_set_double(id_type(h, e), values[i], &value);
 		if (!err)
 			err = check_range(h, e, value);
-		if (err)
-			break;
-		store_number(h, e, value, NULL);
+		if (!err && really)
+			store_number(h, e, value, NULL);
 	}
-	if (done == 0)
-		return err;
-	rung = command_ring(h);
-	return rung ? rung : done;
+	return err;
+}
+
+int ows_set_many(struct ows *h, const int *ids, const double *values, int n)
+{
+	int err = n > 0 ? command_ready(h) : 0;
+
+	if (!err)
+		err = many(h, ids, values, n, false);
+	if (!err)
+		err = many(h, ids, values, n, true);
+	return err || n <= 0 ? err : command_ring(h);
 }
 
 static int set_string(struct ows *h, const struct ows_id *id, const char *text, uint32_t *stamp)
