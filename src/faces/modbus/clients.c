@@ -82,6 +82,7 @@ static bool answer_all(struct clients *c, struct client *client, int64_t now_ns)
 
 	while (!client->out_len && (n = frame_length(client->in + at, client->in_len - at)) > 0) {
 		client->out_len = c->answer(c->ctx, client, client->in + at, client->out);
+		client->came_ns = client->next_ns;
 		at += (size_t)n;
 		client->heard_ns = now_ns;
 		client->late_ns = 0;
@@ -120,7 +121,9 @@ static void receive(struct clients *c, struct client *client, int64_t now_ns)
 		drop(c, client, got ? strerror(errno) : "has left");
 		return;
 	}
-	client->came_ns = client->empty_ns;
+	client->next_ns = client->empty_ns;
+	if (!client->in_len)
+		client->came_ns = client->next_ns;
 	if ((size_t)got < room)
 		client->empty_ns = before_ns;
 	client->in_len += (size_t)got;
@@ -237,7 +240,8 @@ static void welcome(struct clients *c, int fd, const struct listen_address *from
 	log_info(c->face->log, "%s: connected", text);
 }
 
-static void accept_some(struct clients *c, int listener, int64_t now_ns)
+/* True: nobody waits there any more. */
+static bool accept_some(struct clients *c, int listener, int64_t now_ns)
 {
 	for (unsigned i = 0; i < BATCH; i++) {
 		struct sockaddr_storage at;
@@ -254,12 +258,13 @@ static void accept_some(struct clients *c, int listener, int64_t now_ns)
 			continue;
 		}
 		if (fd < 0)
-			return;
+			return fd == -EAGAIN;
 		if (listen_of((const struct sockaddr *)&at, &from))
 			welcome(c, fd, &from, now_ns);
 		else
 			close(fd);
 	}
+	return false;
 }
 
 /* --- Of the face ----------------------------------------------------------------------------- */
@@ -332,17 +337,18 @@ void clients_take(struct clients *c)
 	struct epoll_event events[BATCH];
 	int64_t began_ns = ows_now();
 	int n = epoll_wait(c->epoll, events, BATCH, 0);
+	bool whole = n < BATCH;
 
 	c->pass++;
 	for (int i = 0; i < n; i++) {
 		unsigned number = events[i].data.u32;
 
 		if (number < LISTEN_MAX)
-			accept_some(c, c->listeners[number], began_ns);
+			whole &= accept_some(c, c->listeners[number], began_ns);
 		else if (c->places[number - LISTEN_MAX].used)
 			turn(c, &c->places[number - LISTEN_MAX], began_ns);
 	}
-	if (n < BATCH) {
+	if (whole) {
 		c->whole_ns = began_ns;
 		c->whole_pass = c->pass;
 	}

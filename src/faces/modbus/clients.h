@@ -17,7 +17,8 @@ struct client {
 	int fd;
 	struct listen_address from;
 	int64_t heard_ns; /* its last request, or when it came */
-	int64_t came_ns;  /* what was received last came later */
+	int64_t came_ns;  /* the first byte of its next request came later */
+	int64_t next_ns;  /* that of those behind it */
 	int64_t empty_ns; /* nothing was left to receive then */
 	int64_t blind_ns; /* until then its answers alone were watched for */
 	int64_t late_ns;  /* when it is closed; 0: it owes nothing */

@@ -174,6 +174,48 @@ static void test_what_waits_behind_answers_that_are_not_taken_grows_old(void)
 	close(fd);
 }
 
+static void test_a_request_is_as_old_as_its_first_byte(void)
+{
+	int fd = join();
+	int64_t at_ns = ows_now();
+
+	sends(fd, request, 7);
+	sends(fd, request + 7, 5);
+	TEST_ASSERT_EQUAL_INT(sizeof(request), got(fd));
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(at_ns, came_ns);
+	/* and one that begins behind another as old as what has brought it */
+	sends(fd, request, 7);
+	at_ns = ows_now();
+	TEST_ASSERT_EQUAL_INT(5, (int)send(fd, request + 7, 5, MSG_NOSIGNAL));
+	sends(fd, request, 7);
+	sends(fd, request + 7, 5);
+	TEST_ASSERT_EQUAL_INT(2 * sizeof(request), got(fd));
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(at_ns, came_ns);
+	sends(fd, request, sizeof(request));
+	TEST_ASSERT_GREATER_OR_EQUAL_INT64(at_ns, came_ns);
+	close(fd);
+}
+
+static void test_who_waited_behind_many_is_no_younger_for_it(void)
+{
+	int fds[70];
+	int64_t at_ns;
+
+	run_clients();
+	at_ns = ows_now();
+	for (unsigned i = 0; i < 70; i++) {
+		fds[i] = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+		connect_to(fds[i]);
+		TEST_ASSERT_EQUAL_INT(sizeof(request),
+		                      (int)send(fds[i], request, sizeof(request), 0));
+	}
+	run_clients();
+	TEST_ASSERT_EQUAL_INT(sizeof(request), got(fds[69]));
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(at_ns, came_ns);
+	for (unsigned i = 0; i < 70; i++)
+		close(fds[i]);
+}
+
 static void test_of_one_address_the_most_silent_gives_way(void)
 {
 	int first = join(), second = join(), third;
@@ -231,6 +273,8 @@ int main(void)
 	RUN_TEST(test_one_that_owes_the_rest_of_a_request_is_closed_and_a_silent_one_is_not);
 	RUN_TEST(test_what_is_no_request_closes_the_connection);
 	RUN_TEST(test_what_waits_behind_answers_that_are_not_taken_grows_old);
+	RUN_TEST(test_a_request_is_as_old_as_its_first_byte);
+	RUN_TEST(test_who_waited_behind_many_is_no_younger_for_it);
 	RUN_TEST(test_of_one_address_the_most_silent_gives_way);
 	RUN_TEST(test_without_a_descriptor_the_most_silent_gives_way_too);
 	RUN_TEST(test_without_the_block_all_are_closed);
