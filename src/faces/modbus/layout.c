@@ -121,14 +121,21 @@ static uint32_t float_bits(const struct layout_row *row)
 	return row->good && isfinite(number) ? bits : BAD_FLOAT;
 }
 
+/* So many of the last digit make 1. */
+static double parts(unsigned decimals)
+{
+	double n = 1;
+
+	while (decimals--)
+		n *= 10;
+	return n;
+}
+
 /* The lowest number means that there is none. */
 static uint32_t whole_bits(const struct layout_row *row, uint32_t bad)
 {
-	double number = row->number, most = bad - 1.0;
+	double number = round(row->number * parts(row->decimals)), most = bad - 1.0;
 
-	for (unsigned i = 0; i < row->decimals; i++)
-		number *= 10;
-	number = round(number);
 	return row->good && fabs(number) <= most ? (uint32_t)(int32_t)number : bad;
 }
 
@@ -196,8 +203,6 @@ bool layout_number(const uint16_t *registers, enum layout_field field, unsigned 
 		*number = single;
 		return isfinite(single);
 	}
-	*number = field == LAYOUT_SHORT ? (int16_t)half : (int32_t)half;
-	for (unsigned i = 0; i < decimals; i++)
-		*number /= 10;
+	*number = (field == LAYOUT_SHORT ? (int16_t)half : (int32_t)half) / parts(decimals);
 	return half != (field == LAYOUT_SHORT ? BAD_SHORT : BAD_LONG);
 }

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the addresses, and of what stands there. */
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "unity.h"
 
@@ -188,9 +190,26 @@ static void test_a_number_comes_back_from_its_registers_and_none_from_what_is_ba
 		}
 }
 
+static void test_a_number_with_decimals_is_the_one_that_it_looks_like(void)
+{
+	const uint16_t words[] = {57, 0};
+	double number;
+
+	for (unsigned decimals = 0; decimals < 7; decimals++) {
+		char text[16];
+
+		snprintf(text, sizeof(text), "57e-%u", decimals);
+		TEST_ASSERT_TRUE(layout_number(words, LAYOUT_SHORT, decimals, false, &number));
+		TEST_ASSERT_TRUE(number == strtod(text, NULL)); /* Max may be that */
+		TEST_ASSERT_TRUE(layout_number(words, LAYOUT_LONG, decimals, true, &number));
+		TEST_ASSERT_TRUE(number == strtod(text, NULL));
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_a_number_with_decimals_is_the_one_that_it_looks_like);
 	RUN_TEST(test_a_record_has_its_fields_in_their_order);
 	RUN_TEST(test_rows_of_a_kind_have_each_place_once_and_no_address_is_two_things);
 	RUN_TEST(test_a_number_has_the_bits_of_ieee_754_and_the_word_order_that_is_asked_for);
