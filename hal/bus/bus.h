@@ -199,7 +199,8 @@ struct bus_env {
 	/* Any thread. */
 	int64_t (*now)(void *ctx);
 	/*
-	 * Wait for events (poll(2) bits) on fd, at most until until_ns; fd -1 waits for time alone.
+	 * Wait for events (poll(2) bits) on fd, at most until until_ns, or for a moment more where
+	 * the machine slept meanwhile; fd -1 waits for time alone.
 	 * Returns 1 ready, 0 time is over, -ECANCELED the host shuts down. Every wait of a backend
 	 * goes through here: that gives deadlines, prompt shutdown and virtual time.
 	 */

@@ -93,7 +93,7 @@ static void waits_are_bounded(const struct lane *lane)
 
 		if (slot->lent && !slot->given_up && lane->port &&
 		    slot->begun_ns + LENT_NS < station.now &&
-		    lane->engine->time.gap_ns + LENT_NS < station.now &&
+		    lane->engine->time.resumed_ns + LENT_NS < station.now &&
 		    slot->req.deadline_ns + LENT_NS < station.now)
 			world_fails("a request waits for ever", slot->path);
 	}

@@ -180,6 +180,25 @@ def test_the_genuine_owserver_killed_hanging_and_started_again(scene):
     until(lambda: len(open_files(daemon)) == before, 10, f"descriptors {before}")
 
 
+def test_a_target_that_was_stopped_with_owsd_was_not_silent(scene):
+    server = scene.owserver(mock=["28"])
+    path = server.devices(0)[0] + "/temperature"
+    daemon = scene.owsd(owsdtest.rio(server.target, [
+        dict(Name="room", Path=path, Type=raw("double"), IO=raw("input"), Uncached=raw("on"))], Timeout=1, Period=0.02))
+    until(lambda: scene.get(daemon, "room"), 20)
+    for _ in range(3):
+        server.freeze()
+        time.sleep(0.1)  # a request is on its way
+        daemon.freeze()
+        time.sleep(1.5)  # longer than Timeout
+        daemon.thaw()
+        server.thaw()
+        count = signals(scene, daemon)["room"]["count"]
+        until(lambda: signals(scene, daemon)["room"]["count"] > count, 20, "it is read on")
+    assert "no sign of life" not in daemon.log() and "no answer" not in daemon.log(), daemon.log()
+    assert scene.get(daemon, "_RECONNECTS") == "0"
+
+
 def segment(daemon, kind):
     return owsdtest.segment(daemon.name, kind)
 

@@ -139,7 +139,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer)
 /* A bus that did not run either, as in a suspend, has the grace for its answer when both do. */
 static int64_t patience_ends(const struct engine *e, const struct slot *slot)
 {
-	return later_ns(slot->req.deadline_ns, e->time.gap_ns) + LANE_GRACE_NS;
+	return later_ns(slot->req.deadline_ns, e->time.resumed_ns) + LANE_GRACE_NS;
 }
 
 int64_t lane_timeouts(struct lane *lane)

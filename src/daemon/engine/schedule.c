@@ -115,8 +115,10 @@ void engine_begin_call(struct engine *e, int64_t now_ns)
 	if (e->time.next_ns && now_ns - e->time.next_ns > GAP_NS)
 		e->time.gap_ns = now_ns;
 	/* when in the time since the last call the pause began is not known */
-	if (e->time.next_ns && late_ns > PAUSE_NS)
+	if (e->time.next_ns && late_ns > PAUSE_NS) {
 		e->time.paused_ns += now_ns - e->time.now_ns;
+		e->time.resumed_ns = now_ns;
+	}
 	e->time.now_ns = now_ns;
 	/* the last step may be periods ago */
 	period = begun_period(e, now_ns);

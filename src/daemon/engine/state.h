@@ -246,7 +246,8 @@ struct engine_time {
 	uint64_t period, first; /* boundaries since owsd's start */
 	uint64_t ticked;        /* the last period that engine_tick() went on to */
 	int64_t now_ns;         /* of the call in work */
-	int64_t gap_ns;         /* end of the last time in which the engine did not run; 0: none */
+	int64_t gap_ns;         /* end of the last long time without a call; 0: none */
+	int64_t resumed_ns;     /* likewise, also of a shorter one */
 	int64_t paused_ns;      /* sum of all such times */
 	/* engine.c */
 	int64_t next_ns; /* when engine_step() asked to be called again */

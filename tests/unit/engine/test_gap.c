@@ -86,6 +86,18 @@ static void test_a_bus_that_did_not_run_either_was_not_silent(void)
 	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "given_up"));
 }
 
+static void test_nor_was_it_in_a_stop_that_is_short_but_longer_than_timeout(void)
+{
+	struct bus_req *req;
+
+	s.config.timeout_ns = 300 * SCENE_MS;
+	req = silent_gap(SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	scene_answer(&s, req->id, 0, "        22.5", req);
+	TEST_ASSERT_EQUAL_DOUBLE(22.5, scene_number(&s, 1));
+	TEST_ASSERT_EQUAL_UINT64(0, scene_counter(&s, "given_up"));
+}
+
 static void test_one_that_stays_silent_after_it_is(void)
 {
 	silent_gap(100 * SCENE_S);
@@ -140,6 +152,7 @@ int main(void)
 	RUN_TEST(test_the_next_value_is_of_now);
 	RUN_TEST(test_a_step_that_is_a_little_late_is_no_gap);
 	RUN_TEST(test_a_bus_that_did_not_run_either_was_not_silent);
+	RUN_TEST(test_nor_was_it_in_a_stop_that_is_short_but_longer_than_timeout);
 	RUN_TEST(test_one_that_stays_silent_after_it_is);
 	RUN_TEST(test_a_conversion_is_as_old_as_its_command);
 	return UNITY_END();
