@@ -7,6 +7,9 @@
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
 
+/* So long counts a reading that somebody asked for, of what is not read else. */
+#define ONCE_GOOD_NS (10 * NS_PER_S)
+
 void engine_read_now(struct engine *e, struct signal *s)
 {
 	if (s->reading || !signal_is_read(s))
@@ -17,7 +20,7 @@ void engine_read_now(struct engine *e, struct signal *s)
 
 void engine_read_at(struct engine *e, struct signal *s, uint64_t period)
 {
-	if (!signal_reads(s) && !s->item->read_back_ns && !s->read.once)
+	if (!signal_reads(s) && !s->item->read_back_ns && !s->read.once && !signal_lapses(s))
 		return;
 	if (period <= e->time.period) {
 		engine_read_now(e, s);
@@ -74,11 +77,19 @@ void engine_write_check(struct engine *e, struct signal *s)
 
 uint64_t engine_read_back_at(const struct engine *e, const struct signal *s)
 {
-	int64_t wait_ns = s->item->read_back_ns, restore_ns = s->restore.not_before_ns;
+	int64_t wait_ns = signal_lapses(s) ? ONCE_GOOD_NS : s->item->read_back_ns;
+	int64_t restore_ns = s->restore.not_before_ns;
 
 	if (s->command.differs && s->item->restores && restore_ns - e->time.now_ns < wait_ns)
 		wait_ns = restore_ns - e->time.now_ns;
 	return e->time.period + (wait_ns > 0 ? engine_periods(e, wait_ns) : 1);
+}
+
+/* A reading that somebody asked for, and its time is over. */
+static void disable(struct engine *e, struct signal *s)
+{
+	s->sample.quality = OWS_Q_DISABLED;
+	engine_publish(e, s);
 }
 
 void engine_row_due(struct engine *e, struct signal *s, enum row_wait wait)
@@ -89,8 +100,10 @@ void engine_row_due(struct engine *e, struct signal *s, enum row_wait wait)
 		engine_write_check(e, s);
 	else if (signal_is_read(s))
 		engine_read_now(e, s);
-	else
+	else if (!signal_lapses(s))
 		engine_read_at(e, s, engine_read_back_at(e, s));
+	else
+		disable(e, s);
 }
 
 /* A call so late says that the engine did not run: the machine was suspended, or owsd stopped. */

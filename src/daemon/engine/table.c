@@ -320,6 +320,12 @@ bool signal_is_read(const struct signal *s)
 	       (s->item->read_back_ns && s->sample.count && !signal_changed(s));
 }
 
+bool signal_lapses(const struct signal *s)
+{
+	return !signal_reads(s) && !s->item->output && !s->command.confirmed &&
+	       ows_good(s->sample.quality);
+}
+
 int64_t signal_stale_at(const struct signal *s)
 {
 	int64_t since = s->sample.measured_ns ? s->sample.measured_ns : s->read.known_ns;

@@ -247,6 +247,9 @@ static inline bool signal_has_device(const struct signal *s)
 /* Is it to be read: in the cycle, or to see whether what was written holds? */
 bool signal_is_read(const struct signal *s);
 
+/* Good, not read in the cycle, not what was set: nothing would show that it is so no more. */
+bool signal_lapses(const struct signal *s);
+
 /* When its value becomes older than StaleAfter; INT64_MAX: never. */
 int64_t signal_stale_at(const struct signal *s);
 

@@ -99,11 +99,33 @@ static void test_what_is_not_read_else_is_read_once(void)
 	TEST_ASSERT_EQUAL_STRING("", s.trace);
 	ask(1);
 	ask(2);
-	scene_run(&s, 200 * SCENE_S);
-	TEST_ASSERT_EQUAL_STRING("r " T1 "\nr " PIO "\n", s.trace);
+	scene_run(&s, 9 * SCENE_S);
 	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
 	TEST_ASSERT_EQUAL_INT64(7, scene_sample(&s, 2).value);
+	/* nobody looks whether it is so still */
+	scene_run(&s, 2 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
+	ask(1);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	scene_run(&s, 200 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("r " T1 "\nr " PIO "\nr " T1 "\n", s.trace);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
+}
+
+static void test_a_reload_ends_what_was_good_for_a_moment(void)
+{
+	slow_input()->readable = false;
+	start();
+	ask(1);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 1).quality);
+	scene_reload(&s, NULL);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_DISABLED, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_DOUBLE(21.5, scene_number(&s, 1));
 }
 
 static void test_one_that_fails_is_tried_again_by_nobody_but_the_cycle(void)
@@ -163,6 +185,7 @@ int main(void)
 	RUN_TEST(test_a_flood_costs_one_reading_in_a_period);
 	RUN_TEST(test_one_asked_for_while_a_reading_is_under_way_follows_it);
 	RUN_TEST(test_what_is_not_read_else_is_read_once);
+	RUN_TEST(test_a_reload_ends_what_was_good_for_a_moment);
 	RUN_TEST(test_one_that_fails_is_tried_again_by_nobody_but_the_cycle);
 	RUN_TEST(test_a_request_that_did_not_begin_is_no_reading);
 	RUN_TEST(test_a_target_that_is_down_is_asked_when_it_is_back);

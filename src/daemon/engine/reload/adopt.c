@@ -69,7 +69,7 @@ bool signal_adopt(struct signal *s, const struct signal *was)
 	s->read = was->read;
 	s->journal = was->journal;
 	adopt_text(s->text, was->text);
-	if (signal_reads(was) && !signal_reads(s) && !before->output) {
+	if (!signal_reads(s) && !before->output && (signal_reads(was) || signal_lapses(was))) {
 		s->sample.quality = OWS_Q_DISABLED;
 		s->read.held = false;
 	}
