@@ -191,7 +191,7 @@ def test_the_wires_are_scanned_for_the_person_whom_ingress_names(scene):
 
 
 def test_at_an_address_all_but_the_proxy_are_refused_and_the_socket_is_as_before(scene):
-    _, page = behind(scene)
+    daemon, page = behind(scene)
     for path in ("/", "/api/info", "/api/signals", "/api/events"):
         answer = direct(page, path)
         assert status_of(answer) == 403 and b"the proxy alone" in answer, answer
@@ -199,6 +199,15 @@ def test_at_an_address_all_but_the_proxy_are_refused_and_the_socket_is_as_before
     twice = (b"GET /api/info HTTP/1.1\r\nHost: a\r\nX-Remote-User-Name: anna\r\n"
              b"x-remote-user-name: root\r\n\r\n")
     assert status_of(page.raw(twice)) == 400
+    # and the log of one that everybody reaches says so
+    assert page.program.stop() == 0
+    for proxy, who in ((True, "for the proxy alone"), (False, "whoever reaches it may command")):
+        if not proxy:
+            daemon.config.write_text(daemon.config.read_text().replace(f'Proxy "{PROXY}"', ""))
+        port = owsdtest.free_port()
+        web = scene.start([page.program.command[0], "-n", daemon.name, "-c", daemon.config, "-l", f"0.0.0.0:{port}"])
+        owsdtest.logged(web, f"the page is at http://0.0.0.0:{port}/: {who}")
+        assert web.stop() == 0
 
 
 class Connection(socket.socket):

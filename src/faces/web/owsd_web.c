@@ -100,6 +100,7 @@ static int open_address(struct web *web, struct listen_address address)
 {
 	const struct config_web *options = &web->face->config->web;
 	int err = doors_address(&web->doors, &address);
+	bool local = listen_is_loopback(&address), proxy = options->proxy_at.bits;
 	char text[LISTEN_TEXT_MAX];
 
 	listen_print(&address, text);
@@ -107,13 +108,13 @@ static int open_address(struct web *web, struct listen_address address)
 		log_err(web->face->log, "the page is not at http://%s/: %s%s", text, strerror(-err),
 		        listen_remedy(err));
 	else
-		log_at(web->face->log,
-		       listen_is_loopback(&address) ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
+		log_at(web->face->log, local || proxy ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
 		       "the page is at http://%s/%s", text,
-		       listen_is_loopback(&address) ? ""
-		       : options->configure         ? ": whoever reaches it may configure"
-		       : options->write             ? ": whoever reaches it may command"
-		                                    : ": whoever reaches it may look");
+		       proxy                ? ": for the proxy alone"
+		       : local              ? ""
+		       : options->configure ? ": whoever reaches it may configure"
+		       : options->write     ? ": whoever reaches it may command"
+		                            : ": whoever reaches it may look");
 	return err;
 }
 
@@ -273,6 +274,7 @@ static int open_web(struct face *face)
 	web.since_ns = ows_now();
 	web.route = api_find;
 	face->own = &web;
+	face->config->web.configure |= edit_is_on();
 	face->pace_ns = PACE_NS;
 	face->alarms_after_ns = face->commands_after_ns = face->tick_ns = ows_now();
 	recent_make(&web.recent, 0);
@@ -295,7 +297,6 @@ static int open_web(struct face *face)
 	}
 	open_files(&web);
 	follow_others(&web);
-	face->config->web.configure |= edit_is_on();
 	web.bell = bell_open();
 	if (web.bell >= 0)
 		face_watch(face, web.bell, POLLIN);
