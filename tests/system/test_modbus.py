@@ -280,6 +280,26 @@ def test_a_client_writes_what_it_may_and_the_journal_has_its_address(scene):
     assert face.stop() == 0
 
 
+def test_of_one_request_all_is_written_or_nothing(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, RELAYS, ROOM, Write="on", Allow="* 127.0.0.1"))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        plc.becomes(2, GOOD)
+        until(lambda: refused(plc.write_one, 16 + SHORT, 5) is None, 20, "it is taken")
+        commanded(scene, daemon, "5")
+        # an output, then an input
+        assert refused(plc.write, 40001, ">hh", 7, 20) == ADDRESS
+        assert refused(plc.ask, struct.pack(">BHHBB", 15, 1, 2, 1, 3)) == ADDRESS
+        logged(face, "command to relays and 1 more of modbus:127.0.0.1 refused: it is an input")
+        time.sleep(0.3)  # some periods
+        assert scene.get(daemon, "relays") == "5"
+        # each form of one value, with one request
+        plc.write(16, ">dfih", 6, 6, 6, 6)
+        commanded(scene, daemon, "6")
+    assert face.stop() == 0
+
+
 def test_outputs_of_a_client_that_falls_silent_go_to_their_safe_value(scene):
     port = free_port()
     daemon = scene.owsd(text(scene, port, ROOM, SAFE, Write="on", Allow="relays 127.0.0.1", Beat=3))

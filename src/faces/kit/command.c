@@ -88,36 +88,49 @@ static int way_open(struct face_way *way, const struct face_command *command)
 	return err == -ENOENT ? -ESTALE : err; /* of owsd, not of the name */
 }
 
-static int give(struct face_way *way, struct face_command *command, struct ows_info *info,
-                face_fit *fit, void *ctx)
+int face_way_try(struct face_way *way, const struct face_command *command, face_deed *deed,
+                 void *ctx)
 {
-	const char *given = command->text;
-	int id = face_command_find(way->h, command, info), err;
+	int err = way_open(way, command);
+
+	if (!err)
+		err = deed(way->h, ctx);
+	/* owsd has reloaded, or was started again */
+	if (err == -ESTALE && way->h && ows_reopen(way->h) == 0)
+		err = deed(way->h, ctx);
+	if (err == -ESTALE && way->h) {
+		face_way_close(way);
+		way->open_ns = ows_now() + OPEN_NS;
+	}
+	return err;
+}
+
+struct given {
+	struct face_command *command;
+	struct ows_info *info;
+	face_fit *fit;
+	void *ctx;
+};
+
+static int give(struct ows *h, void *ctx)
+{
+	const struct given *g = ctx;
+	const char *text = g->command->text;
+	int id = face_command_find(h, g->command, g->info), err;
 
 	if (id < 0)
 		return id;
-	err = fit ? fit(ctx, id, info, command) : 0;
+	err = g->fit ? g->fit(g->ctx, id, g->info, g->command) : 0;
 	if (!err)
-		err = face_command_set(way->h, command, id, info, NULL);
-	command->text = given;
+		err = face_command_set(h, g->command, id, g->info, NULL);
+	g->command->text = text;
 	return err;
 }
 
 int face_command_give(struct face_way *way, struct face_command *command, struct ows_info *info,
                       face_fit *fit, void *ctx)
 {
-	int err = way_open(way, command);
-
-	if (!err)
-		err = give(way, command, info, fit, ctx);
-	/* owsd has reloaded, or was started again */
-	if (err == -ESTALE && way->h && ows_reopen(way->h) == 0)
-		err = give(way, command, info, fit, ctx);
-	if (err == -ESTALE && way->h) {
-		face_way_close(way);
-		way->open_ns = ows_now() + OPEN_NS;
-	}
-	return err;
+	return face_way_try(way, command, give, &(struct given){command, info, fit, ctx});
 }
 
 void face_way_close(struct face_way *way)

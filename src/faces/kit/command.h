@@ -33,16 +33,21 @@ struct face_way {
 };
 
 /*
+ * What is done by the way, again on the new image if it says -ESTALE as owsd has reloaded. Waits
+ * for owsd when it connects, two seconds at most, once a second. 0, or as the functions above;
+ * -ESTALE: also that there is no owsd.
+ */
+typedef int face_deed(struct ows *h, void *ctx);
+int face_way_try(struct face_way *way, const struct face_command *command, face_deed *deed,
+                 void *ctx);
+
+/*
  * Before it is set: the face may give the command another text, or refuse it by returning a
  * negative errno. id: of the signal, as long as way.h is the same.
  */
 typedef int face_fit(void *ctx, int id, const struct ows_info *info, struct face_command *command);
 
-/*
- * Connect if that has to be, find, and set; once more on the new image if owsd has reloaded.
- * fit NULL: as it is. Waits for owsd when it connects, two seconds at most, once a second. 0, or as
- * the functions above; -ESTALE: also that there is no owsd.
- */
+/* That as a deed: find, and set. fit NULL: as it is. */
 int face_command_give(struct face_way *way, struct face_command *command, struct ows_info *info,
                       face_fit *fit, void *ctx);
 void face_way_close(struct face_way *way);

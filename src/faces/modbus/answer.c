@@ -8,7 +8,6 @@
 #define REGISTERS_MOST 125
 #define BITS_MOST 2000
 #define WRITTEN_MOST 123
-#define BITS_WRITTEN_MOST 1968
 /* Inputs of one bit: the value is not 0; from these on, it is good, it has an alarm */
 #define BITS_GOOD 10000
 #define BITS_ALARM 20000
@@ -158,9 +157,8 @@ static enum exception read_bits(struct exchange *x)
 	return wrong;
 }
 
-/* Write registers of which the first stands at data: the values that they are, all or none. */
-static enum exception write_values(struct exchange *x, const uint8_t *data, unsigned count,
-                                   bool really)
+/* Write registers of which the first stands at data: the values that they are. */
+static enum exception write_values(struct exchange *x, const uint8_t *data, unsigned count)
 {
 	const struct answer_source *source = x->source;
 	unsigned first = word_at(x->request + 1), width;
@@ -174,7 +172,7 @@ static enum exception write_values(struct exchange *x, const uint8_t *data, unsi
 			return EXCEPTION_ADDRESS;
 		width = layout_width(at.field);
 		if (at.field == LAYOUT_HEADER && at.part == LAYOUT_BEAT) {
-			wrong = source->beat(source->ctx, really);
+			wrong = source->beat(source->ctx);
 			continue;
 		}
 		if (!layout_is_value(at.field) || at.part)
@@ -189,13 +187,12 @@ static enum exception write_values(struct exchange *x, const uint8_t *data, unsi
 			words[k] = (uint16_t)word_at(data + 2 * (i + k));
 		if (!layout_number(words, at.field, x->row.decimals, source->little, &number))
 			return EXCEPTION_VALUE;
-		wrong = source->write(source->ctx, at.place, number, really);
+		wrong = source->write(source->ctx, at.place, number);
 	}
 	return wrong;
 }
 
-static enum exception write_bits(struct exchange *x, const uint8_t *bits, unsigned count,
-                                 bool really)
+static enum exception write_bits(struct exchange *x, const uint8_t *bits, unsigned count)
 {
 	enum exception wrong = EXCEPTION_NONE;
 
@@ -204,22 +201,16 @@ static enum exception write_bits(struct exchange *x, const uint8_t *bits, unsign
 
 		wrong = look_at(x, place);
 		if (!wrong)
-			wrong = x->source->write(x->source->ctx, place, bits[i / 8] >> i % 8 & 1,
-			                         really);
+			wrong = x->source->write(x->source->ctx, place, bits[i / 8] >> i % 8 & 1);
 	}
 	return wrong;
 }
 
-/* What is written is asked for as a whole before any of it is done. */
-static enum exception write_all(struct exchange *x, const uint8_t *data, unsigned count,
-                                enum exception (*write)(struct exchange *x, const uint8_t *data,
-                                                        unsigned count, bool really))
+static enum exception commit(struct exchange *x, enum exception wrong)
 {
-	enum exception wrong = write(x, data, count, false);
-
 	memcpy(x->answer + 1, x->request + 1, 4);
 	x->len = 5;
-	return wrong ? wrong : write(x, data, count, true);
+	return wrong ? wrong : x->source->commit(x->source->ctx);
 }
 
 static enum exception write_coil(struct exchange *x)
@@ -229,22 +220,22 @@ static enum exception write_coil(struct exchange *x)
 
 	if (value != 0 && value != 0xff00)
 		return EXCEPTION_VALUE;
-	return write_all(x, &bit, 1, write_bits);
+	return commit(x, write_bits(x, &bit, 1));
 }
 
 static enum exception write_register(struct exchange *x)
 {
-	return write_all(x, x->request + 3, 1, write_values);
+	return commit(x, write_values(x, x->request + 3, 1));
 }
 
 static enum exception write_coils(struct exchange *x)
 {
 	unsigned count = word_at(x->request + 3);
 
-	if (count < 1 || count > BITS_WRITTEN_MOST || x->request[5] != (count + 7) / 8 ||
+	if (count < 1 || count > FRAME_WRITES_MOST || x->request[5] != (count + 7) / 8 ||
 	    x->n != 6u + x->request[5])
 		return EXCEPTION_VALUE;
-	return write_all(x, x->request + 6, count, write_bits);
+	return commit(x, write_bits(x, x->request + 6, count));
 }
 
 static enum exception write_registers(struct exchange *x)
@@ -254,7 +245,7 @@ static enum exception write_registers(struct exchange *x)
 	if (count < 1 || count > WRITTEN_MOST || x->request[5] != 2 * count ||
 	    x->n != 6 + 2 * count)
 		return EXCEPTION_VALUE;
-	return write_all(x, x->request + 6, count, write_values);
+	return commit(x, write_values(x, x->request + 6, count));
 }
 
 /* Which functions there are, and how long their requests are: so long, or at least so long. */

@@ -9,6 +9,7 @@
 #define FRAME_HEAD 7
 #define FRAME_PDU_MOST 253
 #define FRAME_MOST (FRAME_HEAD + FRAME_PDU_MOST)
+#define FRAME_WRITES_MOST 1968 /* values of one request */
 
 enum exception {
 	EXCEPTION_NONE,
@@ -27,10 +28,11 @@ struct answer_source {
 	/* What a place has. Of one that a signal had that is gone: not good, and had alone. */
 	enum exception (*row)(void *ctx, unsigned place, struct layout_row *row, bool *has);
 	void (*header)(void *ctx, uint16_t registers[LAYOUT_RECORD]);
-	/* May this client command that place? really: and do so. */
-	enum exception (*write)(void *ctx, unsigned place, double number, bool really);
-	/* It has written its beat. */
-	enum exception (*beat)(void *ctx, bool really);
+	/* May this client command that place, or write its beat? Then commit() does so. */
+	enum exception (*write)(void *ctx, unsigned place, double number);
+	enum exception (*beat)(void *ctx);
+	/* All that is written by one request, or nothing. */
+	enum exception (*commit)(void *ctx);
 	void *ctx;
 };
 

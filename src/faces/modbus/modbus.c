@@ -108,7 +108,7 @@ static void header_of(void *ctx, uint16_t registers[LAYOUT_RECORD])
 	layout_put_32(registers + LAYOUT_TIME, (uint32_t)utc_s(), little);
 }
 
-static enum exception write_to(void *ctx, unsigned place, double number, bool really)
+static enum exception write_to(void *ctx, unsigned place, double number)
 {
 	struct modbus *m = ctx;
 	int signal = m->map.places[place].signal;
@@ -122,20 +122,26 @@ static enum exception write_to(void *ctx, unsigned place, double number, bool re
 	if (!look_is_current(m->face) || ows_info(m->face->ows, signal, &info))
 		return EXCEPTION_BUSY;
 	wrong = writing_may(&m->writing, info.name, &m->client->from);
-	if (wrong)
-		return wrong;
-	return really ? writing_set(&m->writing, info.name, number, &m->client->from,
-	                            m->client->came_ns)
-	              : writing_fits(&m->writing, &info, number, &m->client->from);
+	return wrong ? wrong : writing_add(&m->writing, &info, number, &m->client->from);
 }
 
-static enum exception beat_of(void *ctx, bool really)
+static enum exception beat_of(void *ctx)
 {
 	struct modbus *m = ctx;
-	enum exception wrong = writing_may(&m->writing, NULL, &m->client->from);
 
-	if (!wrong && really)
-		writing_heard(&m->writing, &m->client->from, true);
+	m->beats = true;
+	return writing_may(&m->writing, NULL, &m->client->from);
+}
+
+static enum exception commit(void *ctx)
+{
+	struct modbus *m = ctx;
+	enum exception wrong = EXCEPTION_NONE;
+
+	if (m->writing.count)
+		wrong = writing_set(&m->writing, &m->client->from, m->client->came_ns);
+	if (!wrong && m->beats)
+		wrong = writing_heard(&m->writing, &m->client->from, m->client->came_ns, true);
 	return wrong;
 }
 
@@ -146,7 +152,9 @@ static size_t answer(void *ctx, const struct client *client, const uint8_t *requ
 
 	m->now_ns = ows_now();
 	m->client = client;
-	writing_heard(&m->writing, &client->from, false);
+	m->beats = false;
+	m->writing.count = 0;
+	writing_heard(&m->writing, &client->from, client->came_ns, false);
 	return frame_answer(&m->source, request, answer);
 }
 
@@ -296,6 +304,7 @@ int modbus_open(struct face *face)
 	m->source.header = header_of;
 	m->source.write = write_to;
 	m->source.beat = beat_of;
+	m->source.commit = commit;
 	m->source.ctx = m->clients.ctx = m;
 	m->clients.face = m->writing.face = face;
 	m->clients.answer = answer;

@@ -35,6 +35,7 @@ struct modbus {
 	/* the request that is answered */
 	int64_t now_ns;
 	const struct client *client;
+	bool beats;
 };
 
 int modbus_open(struct face *face);

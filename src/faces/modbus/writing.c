@@ -6,10 +6,13 @@
 
 #include "src/config/read/modbus.h"
 #include "src/faces/modbus/writing.h"
+#include "src/ground/service/command_age.h"
+#include "src/ground/signal/attribute.h"
 #include "src/ground/signal/value.h"
 
 #define SAY_NS (10 * NS_PER_S)
 #define AGAIN_NS NS_PER_S
+#define SEVERAL (SIGNAL_NAME_MAX + 24) /* bytes of a name, and how many more */
 
 const char *writing_person(const struct listen_address *from, char person[WRITING_PERSON])
 {
@@ -55,22 +58,28 @@ static int64_t longest_delay_ns(const struct config *config)
 }
 
 /*
- * The one that was silent for longest, if owsd has lost it: its outputs are at SafeValue, and the
- * goodbye of a way that is closed leaves none in force. NULL: all places are needed.
+ * Has owsd lost it? Then its outputs are at SafeValue, and the goodbye of a way that is closed
+ * leaves none in force. One without a promise is not lost, and leaves its commands.
  */
-static struct writer *find_lost(struct writing *w)
+static bool is_spare(const struct writing *w, const struct writer *writer)
 {
-	int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
-	struct writer *lost = NULL;
+	int64_t silent_ns = clock_ns(CLOCK_MONOTONIC) - writer->heard_ns;
+
+	return silent_ns > NS_PER_S + later_ns(writer->promised_ns,
+	                                       longest_delay_ns(w->face->config)) ||
+	       !writer->promised_ns;
+}
+
+/* The one that was silent for longest of those that need no place. NULL: all do. */
+static struct writer *find_spare(struct writing *w)
+{
+	struct writer *spare = NULL;
 
 	for (unsigned i = 0; i < WRITERS; i++)
-		if (!lost || w->writers[i].heard_ns < lost->heard_ns)
-			lost = &w->writers[i];
-	if (lost->promised_ns &&
-	    now_ns - lost->heard_ns <=
-	            NS_PER_S + later_ns(lost->promised_ns, longest_delay_ns(w->face->config)))
-		return NULL;
-	return lost;
+		if ((!spare || w->writers[i].heard_ns < spare->heard_ns) &&
+		    is_spare(w, &w->writers[i]))
+			spare = &w->writers[i];
+	return spare;
 }
 
 static struct writer *find(struct writing *w, const struct listen_address *from, bool new)
@@ -85,7 +94,7 @@ static struct writer *find(struct writing *w, const struct listen_address *from,
 		else if (listen_same(&w->writers[i].from, &host))
 			return &w->writers[i];
 	if (new && !free)
-		free = find_lost(w);
+		free = find_spare(w);
 	if (!new || !free)
 		return NULL;
 	face_way_close(&free->way);
@@ -107,17 +116,23 @@ enum exception writing_may(const struct writing *w, const char *name,
 static void beat(struct writing *w, struct writer *writer)
 {
 	int64_t beat_ns = w->face->config->modbus.beat_ns, now_ns = ows_now();
+	int64_t period_ns = beat_ns ? beat_ns : writer->promised_ns;
 	int err;
 
 	writer->heard_ns = clock_ns(CLOCK_MONOTONIC);
-	if (!writer->way.h || !beat_ns || now_ns < writer->again_ns)
+	if (!writer->way.h || !period_ns || now_ns < writer->again_ns)
 		return;
-	err = ows_beat(writer->way.h, (uint32_t)(beat_ns / NS_PER_MS));
+	err = ows_beat(writer->way.h, (uint32_t)(period_ns / NS_PER_MS));
 	writer->again_ns = 0;
-	writer->promised_ns = beat_ns;
+	writer->promised_ns = period_ns;
 	/* owsd has reloaded, or was started again */
-	if (err == -ESTALE && ows_reopen(writer->way.h))
+	if (err == -ESTALE && ows_reopen(writer->way.h)) {
 		writer->again_ns = now_ns + AGAIN_NS;
+	} else if (!beat_ns) {
+		/* only a goodbye ends a promise */
+		face_way_close(&writer->way);
+		writer->promised_ns = writer->way.open_ns = 0;
+	}
 }
 
 static void refuse(struct writing *w, const struct face_command *command,
@@ -134,8 +149,8 @@ static void refuse(struct writing *w, const struct face_command *command,
 	            face_refusal(command, info, err, words));
 }
 
-enum exception writing_fits(struct writing *w, const struct ows_info *info, double number,
-                            const struct listen_address *from)
+enum exception writing_add(struct writing *w, const struct ows_info *info, double number,
+                           const struct listen_address *from)
 {
 	enum ows_type type = (enum ows_type)info->type;
 	char person[WRITING_PERSON], text[VALUE_TEXT_MAX];
@@ -151,46 +166,77 @@ enum exception writing_fits(struct writing *w, const struct ows_info *info, doub
 	if (!err &&
 	    (value_number(type, value) < info->min || value_number(type, value) > info->max))
 		err = -ERANGE;
-	if (err)
+	if (err) {
 		refuse(w, &command, info, err);
-	return writing_refusal(err);
+		return writing_refusal(err);
+	}
+	w->names[w->count] = info->name;
+	w->numbers[w->count++] = number;
+	return EXCEPTION_NONE;
 }
 
-enum exception writing_set(struct writing *w, const char *name, double number,
-                           const struct listen_address *from, int64_t came_ns)
+/* The first command stands for all: from whom, how old. */
+struct deed {
+	struct writing *w;
+	const struct face_command *command;
+	struct ows_info info;
+};
+
+static int set_all(struct ows *h, void *ctx)
+{
+	struct deed *deed = ctx;
+	struct writing *w = deed->w;
+	int err = face_command_find(h, deed->command, &deed->info);
+
+	for (int i = 0; i < w->count && err >= 0; i++)
+		err = w->ids[i] = ows_find(h, w->names[i]);
+	return err < 0 ? err : ows_set_many(h, w->ids, w->numbers, w->count);
+}
+
+enum exception writing_set(struct writing *w, const struct listen_address *from, int64_t came_ns)
 {
 	struct writer *writer = find(w, from, true);
-	char person[WRITING_PERSON], text[VALUE_TEXT_MAX];
+	char person[WRITING_PERSON], text[VALUE_TEXT_MAX], several[SEVERAL];
 	struct face_command command = {.program = w->face->ops->program,
 	                               .instance = w->face->arguments->instance,
-	                               .name = name,
+	                               .name = w->names[0],
 	                               .text = text,
 	                               .person = writing_person(from, person),
 	                               .came_ns = came_ns};
-	struct ows_info info = {0};
+	struct deed deed = {.w = w, .command = &command};
 	int err;
 
-	value_to_text(OWS_DOUBLE, value_of_double(number), text);
-	err = writer ? face_command_give(&writer->way, &command, &info, NULL, NULL) : -ENOSPC;
+	value_to_text(OWS_DOUBLE, value_of_double(w->numbers[0]), text);
+	err = writer ? face_way_try(&writer->way, &command, set_all, &deed) : -ENOSPC;
 	if (err) {
-		refuse(w, &command, &info, err);
+		snprintf(several, sizeof(several), "%s and %d more", w->names[0], w->count - 1);
+		command.name = w->count > 1 ? several : w->names[0];
+		refuse(w, &command, &deed.info, err);
 		return writing_refusal(err);
 	}
-	w->taken++;
-	log_info(w->face->log, "%s set to %s for %s", name, text, person);
+	w->taken += (unsigned)w->count;
+	for (int i = 0; i < w->count; i++) {
+		value_to_text(OWS_DOUBLE, value_of_double(w->numbers[i]), text);
+		log_info(w->face->log, "%s set to %s for %s", w->names[i], text, person);
+	}
 	beat(w, writer);
 	return EXCEPTION_NONE;
 }
 
-void writing_heard(struct writing *w, const struct listen_address *from, bool by_register)
+enum exception writing_heard(struct writing *w, const struct listen_address *from, int64_t came_ns,
+                             bool by_register)
 {
-	struct writer *writer = find(w, from, false);
+	struct writer *writer;
 
-	if (!writer || writing_may(w, NULL, from))
-		return;
+	if (ows_now() - came_ns > COMMAND_OLD_NS)
+		return EXCEPTION_BUSY;
+	writer = writing_may(w, NULL, from) ? NULL : find(w, from, by_register);
+	if (!writer)
+		return EXCEPTION_NONE;
 	writer->by_register |= by_register;
 	if (by_register || !writer->by_register)
 		beat(w, writer);
+	return EXCEPTION_NONE;
 }
 
 void writing_close(struct writing *w)

@@ -24,6 +24,10 @@ struct writer {
 struct writing {
 	struct face *face;
 	struct writer writers[WRITERS];
+	/* what one request sets */
+	const char *names[FRAME_WRITES_MOST];
+	double numbers[FRAME_WRITES_MOST];
+	int ids[FRAME_WRITES_MOST], count;
 	uint64_t taken, refused;
 	int64_t said_ns; /* when the log had the last refusal */
 };
@@ -31,19 +35,25 @@ struct writing {
 /* May a client at that address command the signal, or beat (NULL)? */
 enum exception writing_may(const struct writing *w, const char *name,
                            const struct listen_address *from);
-/* Does the signal take the number, as far as its type, Min and Max say? If not, the log has it. */
-enum exception writing_fits(struct writing *w, const struct ows_info *info, double number,
-                            const struct listen_address *from);
-/* Set it; came_ns as in struct face_command. */
-enum exception writing_set(struct writing *w, const char *name, double number,
-                           const struct listen_address *from, int64_t came_ns);
-/* A client at that address, which may have commanded, has asked; by_register: written its beat. */
-void writing_heard(struct writing *w, const struct listen_address *from, bool by_register);
+/*
+ * One more to be set, if the signal takes the number, as far as its type, Min and Max say; if not,
+ * the log has it.
+ */
+enum exception writing_add(struct writing *w, const struct ows_info *info, double number,
+                           const struct listen_address *from);
+/* Set all of them (one at least), or none; came_ns as in struct face_command. */
+enum exception writing_set(struct writing *w, const struct listen_address *from, int64_t came_ns);
+/*
+ * A client at that address, which may have commanded, has asked; by_register: written its beat.
+ * EXCEPTION_BUSY: what may have waited says nothing of the client now.
+ */
+enum exception writing_heard(struct writing *w, const struct listen_address *from, int64_t came_ns,
+                             bool by_register);
 /* At the end: who has promised a beat is lost to owsd, so that its outputs become safe. */
 void writing_close(struct writing *w);
 
 #define WRITING_PERSON 32
 /* "modbus:10.0.0.5"; of a long address the end. Returns person. Pure. */
 const char *writing_person(const struct listen_address *from, char person[WRITING_PERSON]);
-/* What a client is told of an error of face_command_give(). Pure. */
+/* What a client is told of an error of face_way_try(). Pure. */
 enum exception writing_refusal(int err);

@@ -52,42 +52,89 @@ void tearDown(void)
 	instance_end(&in);
 }
 
+static enum exception set(const char *name, double number, const struct listen_address *from,
+                          int64_t came_ns)
+{
+	w.names[0] = name;
+	w.numbers[0] = number;
+	w.count = 1;
+	return writing_set(&w, from, came_ns);
+}
+
+static enum exception heard(const struct listen_address *from, bool by_register)
+{
+	return writing_heard(&w, from, ows_now(), by_register);
+}
+
 static void test_a_client_is_a_controller_that_beats_as_long_as_it_asks(void)
 {
 	struct controller_beat beat;
 	uint32_t before;
 
-	writing_heard(&w, &plc, true); /* it has not commanded */
+	heard(&plc, false); /* it has not commanded */
 	TEST_ASSERT_EQUAL_UINT(0, instance_controllers(&in));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, ows_now()));
 	TEST_ASSERT_EQUAL_UINT(1, instance_controllers(&in));
 	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL_UINT(3000, beat.period_ms);
 	before = beat.beat;
-	writing_heard(&w, &other, false);
+	heard(&other, false);
 	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL_UINT(before, beat.beat);
 	plc.port = 4001; /* another connection of it */
-	writing_heard(&w, &plc, false);
+	heard(&plc, false);
 	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL_UINT(before + 1, beat.beat);
 	/* from its first beat in the register on, that alone counts */
-	writing_heard(&w, &plc, true);
-	writing_heard(&w, &plc, false);
+	heard(&plc, true);
+	heard(&plc, false);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(before + 2, beat.beat);
+	/* what has waited says nothing of now */
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_heard(&w, &plc, ows_now() - 3 * S, true));
 	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL_UINT(before + 2, beat.beat);
 	config.modbus.write = false;
-	writing_heard(&w, &plc, true);
+	heard(&plc, true);
 	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_EQUAL_UINT(before + 2, beat.beat);
 	TEST_ASSERT_EQUAL_UINT64(1, w.taken);
 }
 
+static void test_a_beat_by_register_counts_alone_also_if_it_came_before_the_first_command(void)
+{
+	struct controller_beat beat;
+	uint32_t before;
+
+	heard(&plc, true);
+	TEST_ASSERT_EQUAL_UINT(0, instance_controllers(&in));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, ows_now()));
+	controller_beat(instance_controller(&in, 0), &beat);
+	before = beat.beat;
+	heard(&plc, false);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_EQUAL_UINT(before, beat.beat);
+}
+
+static void test_a_promise_that_the_file_ends_is_taken_back(void)
+{
+	struct controller_beat beat;
+
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, ows_now()));
+	config.modbus.beat_ns = 0;
+	heard(&plc, false);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_TRUE(beat.goodbye);
+	TEST_ASSERT_NULL(w.writers[0].way.h);
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 0, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT64(0, w.writers[0].promised_ns);
+}
+
 static void test_what_is_refused_is_so_by_the_exception_that_fits(void)
 {
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_set(&w, "pump", 2.5, &plc, ows_now()));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_set(&w, "nothing", 1, &plc, ows_now()));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &plc, ows_now() - 3 * S));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, set("pump", 2.5, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, set("nothing", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, set("pump", 1, &plc, ows_now() - 3 * S));
 	TEST_ASSERT_EQUAL_UINT64(3, w.refused);
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_FAILURE, writing_refusal(-EACCES));
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_ADDRESS, writing_refusal(-EROFS));
@@ -101,47 +148,67 @@ static void test_an_address_that_owsd_has_lost_gives_its_place_to_another(void)
 
 	for (uint8_t i = 0; i < WRITERS; i++) {
 		other.bytes[3] = (uint8_t)(100 + i);
-		TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE,
-		                      writing_set(&w, "pump", 1, &other, ows_now()));
+		TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &other, ows_now()));
 	}
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, set("pump", 1, &plc, ows_now()));
 	w.writers[7].heard_ns -= 10 * S;
 	/* its outputs wait for SafeDelay */
 	config.items = &slow;
 	config.item_count = 1;
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, set("pump", 1, &plc, ows_now()));
 	config.item_count = 0;
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, ows_now()));
 	TEST_ASSERT_EQUAL_UINT(WRITERS + 1, instance_controllers(&in));
 	controller_beat(instance_controller(&in, 7), &beat);
 	TEST_ASSERT_TRUE(beat.goodbye);
 	other.bytes[3] = 107; /* it is back, and no place is free */
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, writing_set(&w, "pump", 1, &other, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, set("pump", 1, &other, ows_now()));
 	other.bytes[3] = 108;
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &other, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &other, ows_now()));
 	/* without Beat nothing was promised */
 	for (unsigned i = 0; i < WRITERS; i++)
 		w.writers[i].promised_ns = 0;
 	other.bytes[3] = 107;
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &other, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &other, ows_now()));
 }
 
 static void test_a_number_has_to_fit_before_any_is_set(void)
 {
 	struct ows_info info = {.name = "pump", .type = OWS_BOOL, .min = NAN, .max = NAN};
 
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_fits(&w, &info, 1, &plc));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, 0.5, &plc));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, 2, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_add(&w, &info, 1, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_add(&w, &info, 0.5, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_add(&w, &info, 2, &plc));
 	info.type = OWS_DOUBLE;
 	info.min = -10;
 	info.max = 25.5;
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_fits(&w, &info, -10, &plc));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_fits(&w, &info, 25.5, &plc));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, 25.6, &plc));
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_fits(&w, &info, -10.1, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_add(&w, &info, -10, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_add(&w, &info, 25.5, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_add(&w, &info, 25.6, &plc));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_VALUE, writing_add(&w, &info, -10.1, &plc));
 	TEST_ASSERT_EQUAL_UINT64(4, w.refused);
+	TEST_ASSERT_EQUAL_INT(3, w.count);
 	TEST_ASSERT_EQUAL_UINT(0, instance_controllers(&in));
+}
+
+static void test_what_owsd_refuses_leaves_all_else_of_the_request_as_it_is(void)
+{
+	static const char *const wrong[] = {"room", "nothing"};
+
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 0, &plc, ows_now()));
+	for (size_t i = 0; i < 2; i++) {
+		w.names[0] = "pump";
+		w.names[1] = wrong[i];
+		w.numbers[0] = w.numbers[1] = 1;
+		w.count = 2;
+		TEST_ASSERT_NOT_EQUAL(EXCEPTION_NONE, writing_set(&w, &plc, ows_now()));
+		TEST_ASSERT_EQUAL_INT64(0, instance_command(&in, 0, PUMP).value);
+		TEST_ASSERT_EQUAL_UINT32(1, instance_command(&in, 0, PUMP).stamp);
+	}
+	w.names[1] = "pump";
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, PUMP).value);
+	TEST_ASSERT_EQUAL_UINT64(3, w.taken);
 }
 
 static void test_a_client_may_what_the_configuration_says(void)
@@ -158,7 +225,7 @@ static void test_a_client_that_promised_a_beat_is_lost_at_the_end_and_says_no_go
 {
 	struct controller_beat beat;
 
-	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, writing_set(&w, "pump", 1, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, ows_now()));
 	writing_close(&w);
 	controller_beat(instance_controller(&in, 0), &beat);
 	TEST_ASSERT_FALSE(beat.goodbye);
@@ -182,9 +249,12 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_client_is_a_controller_that_beats_as_long_as_it_asks);
+	RUN_TEST(test_a_beat_by_register_counts_alone_also_if_it_came_before_the_first_command);
+	RUN_TEST(test_a_promise_that_the_file_ends_is_taken_back);
 	RUN_TEST(test_what_is_refused_is_so_by_the_exception_that_fits);
 	RUN_TEST(test_an_address_that_owsd_has_lost_gives_its_place_to_another);
 	RUN_TEST(test_a_number_has_to_fit_before_any_is_set);
+	RUN_TEST(test_what_owsd_refuses_leaves_all_else_of_the_request_as_it_is);
 	RUN_TEST(test_a_client_may_what_the_configuration_says);
 	RUN_TEST(test_a_client_that_promised_a_beat_is_lost_at_the_end_and_says_no_goodbye);
 	RUN_TEST(test_a_person_has_the_end_of_a_long_address);
