@@ -6,12 +6,14 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "hal/base/file.h"
 #include "src/faces/modbus/map.h"
 #include "src/history/file/place.h"
 
 #define PROGRAM "owsd-modbus"
 #define WHAT "modbus"
-#define LINE_MOST 512
+#define FILE_MOST (LAYOUT_PLACES * 1024)
+#define IDENTITY_MOST 500
 
 static int map_put(struct map *map, unsigned place, const char *identity)
 {
@@ -47,8 +49,12 @@ int map_take(struct map *map, char *line)
 	    (*identity != ' ' && *identity != '\t'))
 		return -EINVAL;
 	identity += strspn(identity, " \t");
-	if (*identity != '/')
+	if (*identity != '/' || strlen(identity) > IDENTITY_MOST)
 		return -EINVAL;
+	/* it goes into files of other programs */
+	for (const char *c = identity; *c; c++)
+		if (((unsigned char)*c < ' ' && *c != '\t') || *c == 0x7f)
+			return -EINVAL;
 	if (map->places[place].identity || map_known(map, identity))
 		return 0;
 	return map_put(map, (unsigned)place, identity);
@@ -56,20 +62,19 @@ int map_take(struct map *map, char *line)
 
 int map_read(struct map *map, const char *path, unsigned *line)
 {
-	FILE *in = fopen(path, "re");
-	char text[LINE_MOST];
-	int err = 0;
+	char why[100], *rest, *text, *one;
+	int err;
 
 	*line = 0;
-	if (!in)
-		return -errno;
-	while (!err && fgets(text, sizeof(text), in)) {
+	text = rest = file_text(path, FILE_MOST, &err, why, sizeof(why));
+	/* -EINVAL is that of a line */
+	if (!text)
+		return err == -EINVAL ? -ENOTSUP : err;
+	while (!err && (one = strsep(&rest, "\n"))) {
 		++*line;
-		err = strchr(text, '\n') || feof(in) ? map_take(map, text) : -EINVAL;
+		err = map_take(map, one);
 	}
-	if (!err && ferror(in))
-		err = -EIO;
-	fclose(in);
+	free(text);
 	return err;
 }
 

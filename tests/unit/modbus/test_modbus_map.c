@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "unity.h"
@@ -71,8 +72,9 @@ static void test_of_two_files_the_first_wins(void)
 static void test_a_line_is_a_place_and_an_identity(void)
 {
 	static const char *const wrong[] = {
-		"/a",  "0 /a", "2048 /a", "-1 /a", "1/a",
-		"1 a", "1",    "x /a",    " 1 /a", "99999999999999999999 /a"};
+		"/a",          "0 /a",   "2048 /a", "-1 /a", "1/a",
+		"1 a",         "1",      "x /a",    " 1 /a", "99999999999999999999 /a",
+		"1 /a\033[2J", "1 /\177"};
 
 	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
 		TEST_ASSERT_EQUAL_INT_MESSAGE(-EINVAL, take(wrong[i]), wrong[i]);
@@ -101,6 +103,10 @@ static void test_a_file_that_is_none_is_refused_with_its_line(void)
 	fprintf(out, "1 /%0600d\n", 0);
 	fclose(out);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, map_read(&map, path, &line));
+	/* one that has no writer: who opens it waits */
+	unlink(path);
+	TEST_ASSERT_EQUAL_INT(0, mkfifo(path, 0600));
+	TEST_ASSERT_EQUAL_INT(-ENOTSUP, map_read(&map, path, &line));
 }
 
 static void test_the_service_keeps_it_in_its_state_directory(void)
