@@ -158,12 +158,15 @@ static bool is_letter(char c)
 	return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-/* An identifier of IEC 61131-3. A name that is none gets the place, so that no two agree. */
-static const char *identifier(const char *const *cells, char id[ID_MOST])
+/*
+ * An identifier of IEC 61131-3, whose case counts for nothing. A name that is none gets the place,
+ * and so does one with a twin, so that no two agree.
+ */
+static const char *identifier(const char *const *cells, bool twin, char id[ID_MOST])
 {
 	const char *name = cells[MODBUS_CELL_name];
 	size_t at = 0;
-	bool same = true;
+	bool same = !twin;
 
 	if (!is_letter(*name))
 		id[at++] = 'S';
@@ -248,7 +251,7 @@ void modbus_form_row(struct modbus_file *file, const struct modbus_form *form,
 #define X(name) {#name, cells[MODBUS_CELL_##name]},
 		MODBUS_CELLS(X)
 #undef X
-			{"id", identifier(cells, id)},
+			{"id", identifier(cells, file->twin, id)},
 		{NULL, NULL},
 	};
 

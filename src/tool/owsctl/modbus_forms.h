@@ -2,6 +2,7 @@
 /* The forms in which owsctl modbus-map writes its rows for programs that import them. */
 #pragma once
 
+#include <stdbool.h>
 #include <stdio.h>
 
 /* What a row has, in this order; the words of the forms have the same names. */
@@ -29,6 +30,8 @@ struct modbus_file {
 	const char *instance, *host, *port; /* where owsd-modbus is, as the program reaches it */
 	unsigned count;                     /* of places with a signal */
 	unsigned written;                   /* 0 at first */
+	/* Of the next row: the name is that of another signal, but for case. */
+	bool twin;
 };
 
 void modbus_form_begin(struct modbus_file *file, const struct modbus_form *form);

@@ -4,6 +4,7 @@
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "src/faces/show/json.h"
 #include "src/ground/signal/value.h"
@@ -46,6 +47,18 @@ static void cells_of(const struct map *map, struct ows *h, unsigned place,
 	cells[MODBUS_CELL_identity] = map->places[place].identity;
 }
 
+/* Is there another signal of that name, but for case? */
+static bool has_twin(struct ows *h, const char *name)
+{
+	struct ows_info info;
+	bool found = false;
+
+	for (int i = 0; *name && !found && i < ows_count(h); i++)
+		found = !ows_info(h, i, &info) && !strcasecmp(info.name, name) &&
+		        strcmp(info.name, name) != 0;
+	return found;
+}
+
 static void print_json_row(struct json *json, const char *const *cells)
 {
 	json_object(json, NULL);
@@ -74,6 +87,7 @@ static void print_map(const struct map *map, struct ows *h, struct modbus_file *
 		if (!map->places[place].identity)
 			continue;
 		cells_of(map, h, place, numbers, cells);
+		file->twin = form && has_twin(h, cells[MODBUS_CELL_name]);
 		if (form)
 			modbus_form_row(file, form, cells);
 		else if (as_json)
@@ -156,8 +170,8 @@ static bool host_and_port(char *text, struct modbus_file *file)
 		text++;
 	}
 	file->host = text;
-	/* it goes into scripts */
-	return *text &&
+	/* it goes into scripts; and a number of JSON begins with no other digit */
+	return *text && *file->port >= '1' && *file->port <= '9' &&
 	       !text[strspn(text, "0123456789abcdefghijklmnopqrstuvwxyz"
 	                          "ABCDEFGHIJKLMNOPQRSTUVWXYZ.:-_%")] &&
 	       ctl_count(file->port, 1, UINT16_MAX, &number);

@@ -16,7 +16,10 @@
 static const struct instance_signal signals[] = {
 	{"room1", "/28.1/temperature", OWS_DOUBLE, false, 0},
 	{"relay", "/29.1/PIO.0", OWS_BOOL, true, 0},
+	{"tank", "/28.3/temperature", OWS_DOUBLE, false, 0},
+	{"Tank", "/28.4/temperature", OWS_DOUBLE, false, 0},
 };
+#define SIGNALS (sizeof(signals) / sizeof(signals[0]))
 static struct instance in;
 
 /* The verb with the places of a file. */
@@ -36,7 +39,7 @@ static int map_of(const char *lines, const char *more)
 
 void setUp(void)
 {
-	instance_start(&in, "modbusmap", signals, 2);
+	instance_start(&in, "modbusmap", signals, SIGNALS);
 	caught_begin(in.name);
 }
 
@@ -119,7 +122,8 @@ static void test_a_host_is_a_name_or_an_address_with_a_port_or_without(void)
 		{"plant", "-p 502 -0"}, {"plant:1502", "-p 1502 -0"}, {"[::1]:1502", "-c 1 ::1 "},
 		{"[::1]", "-c 1 ::1 "}, {"fd00::5", "-c 1 fd00::5 "},
 	};
-	static const char *const wrong[] = {"plant:0", "plant:", "plant:x", ":502", "a;b", "[]:1"};
+	static const char *const wrong[] = {"plant:0", "plant:", "plant:x",  ":502",
+	                                    "a;b",     "[]:1",   "plant:+5", "plant:0502"};
 	char words[64];
 
 	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
@@ -169,6 +173,15 @@ static void test_names_that_a_program_would_not_take_become_others(void)
 	}
 }
 
+/* In the languages of IEC 61131-3 they would be one. */
+static void test_names_that_differ_by_case_alone_become_two(void)
+{
+	TEST_ASSERT_EQUAL(CTL_DONE,
+	                  map_of("3 /28.3/temperature\n4 /28.4/temperature\n", "--as scl"));
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(out, "\"tank_P3\" : "), out);
+	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(out, "\"Tank_P4\" : "), out);
+}
+
 static void test_what_is_no_map_is_said_with_its_line(void)
 {
 	TEST_ASSERT_EQUAL(CTL_FAILED, map_of("1 /a\nx\n", ""));
@@ -189,6 +202,7 @@ int main(void)
 	RUN_TEST(test_each_program_gets_its_own_form);
 	RUN_TEST(test_a_host_is_a_name_or_an_address_with_a_port_or_without);
 	RUN_TEST(test_names_that_a_program_would_not_take_become_others);
+	RUN_TEST(test_names_that_differ_by_case_alone_become_two);
 	RUN_TEST(test_what_is_no_map_is_said_with_its_line);
 	return UNITY_END();
 }
