@@ -224,6 +224,8 @@ int ds2482_open(struct link_master *base, char *why, size_t why_size)
 	if (base->env->tap && base->env->tap->adapter)
 		master->adapter = base->env->tap->adapter(base->env->tap, base->env,
 		                                          master->adapter);
+	if (!master->adapter)
+		return -ENOMEM;
 	master->count = 0;
 	if (master->address < 0) {
 		err = take_all(master, why, why_size);

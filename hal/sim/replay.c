@@ -14,7 +14,6 @@
 #include "hal/ds2482/power.h"
 #include "hal/native/native.h"
 #include "hal/sim/replay.h"
-#include "hal/trace/links.h"
 #include "hal/trace/tap.h"
 
 /* Stands in place of the operations of the bus, whose copy it has. */
@@ -53,7 +52,7 @@ static int replay_wait(void *ctx, int fd, short events, int64_t until_ns)
 	int ready = replay->host->wait(replay->host->ctx, fd, events, until_ns);
 	int64_t now_ns = ready > 0 ? bus_now(replay->host) : until_ns;
 
-	if (now_ns > replay->now_ns)
+	if (ready >= 0 && now_ns > replay->now_ns)
 		replay->now_ns = now_ns;
 	return ready;
 }
@@ -188,10 +187,10 @@ static int create_on(struct replay *replay, struct bus **bus, char *why, size_t 
 	const struct trace *trace = &replay->trace;
 	bool links = trace_link_count(trace);
 
-	if (links || trace_has(trace, trace->i2c.name))
+	if (links || trace->first[TRACE_I2C])
 		return native_create(&replay_bus, links ? &replay_master : &replay_ds2482,
 		                     replay->name, &replay->env, bus, why, why_size);
-	if (!trace_has(trace, trace->net.name)) {
+	if (!trace->first[TRACE_NET]) {
 		snprintf(why, why_size, "%.100s has no line of a wire or a server", replay->name);
 		return -EINVAL;
 	}

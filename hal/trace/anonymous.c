@@ -8,9 +8,6 @@
  * known id are replaced. Directions of searches are not recorded but where devices differ: those of
  * a search that begins are zeros, and would give away the mask.
  */
-#include <ctype.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -20,7 +17,6 @@
 #include "hal/wire/crc.h"
 #include "hal/wire/device.h"
 
-#define LINKS 64
 #define SERIAL 12 /* its digits */
 #define SEQUENCE 2048
 
@@ -31,7 +27,7 @@ struct ids {
 	struct {
 		uint8_t rom[8];
 		unsigned position; /* of the next triplet */
-	} search[LINKS];
+	} search[TRACE_NET];
 };
 
 static void put_hex(char *text, const uint8_t *bytes, size_t n)
@@ -44,12 +40,6 @@ static void put_hex(char *text, const uint8_t *bytes, size_t n)
 	}
 }
 
-static void put_mask(const struct ids *ids, uint8_t rom[8])
-{
-	for (int i = 0; i < 8; i++)
-		rom[i] ^= ids->mask[i];
-}
-
 static void collect(struct ids *ids, const uint8_t rom[8])
 {
 	for (unsigned i = 0; i < ids->count; i++)
@@ -59,18 +49,23 @@ static void collect(struct ids *ids, const uint8_t rom[8])
 		memcpy(ids->rom[ids->count++], rom, 8);
 }
 
+/* Where a line has digits, a text is no recording of owsctl, and has not their length. */
+static size_t parse(const char *digits, uint8_t *bytes, size_t n)
+{
+	return *digits == '"' ? 0 : trace_parse(digits, bytes, n);
+}
+
 /* Here the line has an id. */
 static void visit(struct ids *ids, char *digits)
 {
 	uint8_t rom[8];
 
-	if (trace_parse(digits, rom, 8) != 8)
+	if (parse(digits, rom, 8) != 8)
 		return;
-	if (!ids->replaces) {
+	if (!ids->replaces)
 		collect(ids, rom);
-		return;
-	}
-	put_mask(ids, rom);
+	for (int i = 0; i < 8; i++)
+		rom[i] ^= ids->mask[i];
 	put_hex(digits, rom, 8);
 }
 
@@ -99,134 +94,133 @@ static bool begins(const char *text, const char *with)
 }
 
 /* Ids as a path has them, 28.551DDF030000. */
-static void collect_paths(struct ids *ids, const char *line)
+static void collect_paths(struct ids *ids, const char *text)
 {
-	for (const char *dot = line; (dot = strchr(dot, '.')); dot++) {
+	for (const char *dot = text; (dot = strchr(dot, '.')); dot++) {
 		uint8_t rom[8];
 
-		if (dot < line + 2 || trace_parse(dot - 2, rom, 1) != 1 ||
-		    trace_parse(dot + 1, rom + 1, 6) != 6)
+		if (dot < text + 2 || parse(dot - 2, rom, 1) != 1 ||
+		    parse(dot + 1, rom + 1, 6) != 6)
 			continue;
 		rom[7] = rom_crc8(rom, 7);
 		collect(ids, rom);
 	}
 }
 
-/* The two checksums behind data that have changed are made anew where they were right. */
+/*
+ * Data that have changed get right checksums where they had some: a CRC16 behind what was written
+ * and read, and behind each further block; a CRC8 of what was read.
+ */
 static void mend_checks(const uint8_t *was, uint8_t *is, size_t sent, size_t n)
 {
-	for (size_t begin = 0; begin < n; begin++)
-		for (size_t end = begin + 1; end + 2 <= n; end++) {
-			size_t len = end - begin;
-			uint16_t crc = (uint16_t)~onewire_crc16(0, is + begin, len);
+	uint16_t old = 0, made = 0;
 
-			if (end < sent || memcmp(was + begin, is + begin, len) == 0 ||
-			    !onewire_crc16_matches(onewire_crc16(0, was + begin, len), was + end))
-				continue;
-			is[end] = (uint8_t)crc;
-			is[end + 1] = (uint8_t)(crc >> 8);
-		}
+	for (size_t i = 0; i + 2 < n; i++) {
+		old = onewire_crc16(old, was + i, 1);
+		made = onewire_crc16(made, is + i, 1);
+		if (i + 1 < sent || !onewire_crc16_matches(old, was + i + 1))
+			continue;
+		is[++i] = (uint8_t)~made;
+		is[++i] = (uint8_t)(~made >> 8);
+		old = made = 0;
+	}
 	if (n > sent && rom_crc8(was + sent, n - sent - 1) == was[n - 1])
 		is[n - 1] = rom_crc8(is + sent, n - sent - 1);
 }
 
-/* The digits of each known id, from its first byte on or from its last, with its checksum. */
-static void replace_known(const struct ids *ids, char *line)
+/* The digits of each known id, from its first byte on or from its last. */
+static void replace_known(const struct ids *ids, char *text)
 {
-	for (unsigned i = 0; i < ids->count; i++) {
-		uint8_t from[8], to[8], back[2][8];
-		char text[2][17] = {0}, other[2][17] = {0};
+	for (unsigned i = 0; i < 2 * ids->count; i++) {
+		uint8_t rom[8], other[8];
+		char from[16], to[16];
 
-		memcpy(from, ids->rom[i], 8);
-		memcpy(to, from, 8);
-		put_mask(ids, to);
 		for (int k = 0; k < 8; k++) {
-			back[0][k] = from[7 - k];
-			back[1][k] = to[7 - k];
-		}
-		put_hex(text[0], from, 8);
-		put_hex(other[0], to, 8);
-		put_hex(text[1], back[0], 8);
-		put_hex(other[1], back[1], 8);
-		for (char *at = line; *at; at++)
-			for (int way = 0; way < 2; way++) {
-				char *check = way ? at - 2 : at + SERIAL;
-				int of = way ? 0 : 14;
+			int byte = i & 1 ? 7 - k : k;
 
-				if (strncasecmp(at, text[way] + 2, SERIAL) != 0)
-					continue;
-				memcpy(at, other[way] + 2, SERIAL);
-				if (check >= line && strncasecmp(check, text[way] + of, 2) == 0)
-					memcpy(check, other[way] + of, 2);
-			}
+			rom[k] = ids->rom[i / 2][byte];
+			other[k] = rom[k] ^ ids->mask[byte];
+		}
+		put_hex(from, rom, 8);
+		put_hex(to, other, 8);
+		for (char *at = text; *at; at++) {
+			if (strncasecmp(at, from + 2, SERIAL) != 0)
+				continue;
+			memcpy(at, to + 2, SERIAL);
+			/* the checksum stands on one side; the family, which stays, on the other */
+			if (at >= text + 2 && strncasecmp(at - 2, from, 2) == 0)
+				memcpy(at - 2, to, 2);
+			if (strncasecmp(at + SERIAL, from + 14, 2) == 0)
+				memcpy(at + SERIAL, to + 14, 2);
+		}
 	}
 }
 
-static void visit_text(struct ids *ids, char *line)
+static void visit_text(struct ids *ids, char *text)
 {
 	if (ids->replaces)
-		replace_known(ids, line);
+		replace_known(ids, text);
 	else
-		collect_paths(ids, line);
+		collect_paths(ids, text);
 }
 
-/* Bytes that are written and then read by a part; sent: how many are written, without the id. */
-static size_t get_bytes(const char *question, const char *answer, uint8_t *bytes, size_t *sent)
+/* Bytes that a part writes after the ROM command, and then reads; sent: how many it writes. */
+static size_t get_bytes(const struct trace_line *line, uint8_t *bytes, size_t *sent)
 {
-	const char *out = question + strlen("run r ");
-	bool selects = begins(out, "55") && strcspn(out, " ") >= 18;
-	size_t n;
+	const char *out = line->question + strlen("run r ");
+	size_t skipped = begins(line->question, "run -")          ? 0
+	                 : begins(out, "55") || begins(out, "69") ? 18
+	                                                          : 2;
 
-	*sent = trace_parse(out + (selects ? 18 : 0), bytes, SEQUENCE);
-	n = *sent;
-	answer += strcspn(answer, " ");
-	answer += *answer != 0;
-	/* a run answers in digits; a text in its place is no recording of owsctl */
-	return *answer == '"' ? n : n + trace_parse(answer, bytes + n, SEQUENCE - n);
+	*sent = strcspn(out, " ") < skipped ? 0 : parse(out + skipped, bytes, SEQUENCE);
+	return *sent + parse(line->bytes, bytes + *sent, SEQUENCE - *sent);
 }
 
-static void visit_line(struct ids *ids, char *line)
+/* Where the ids of a line are, but those in its texts. */
+static void visit_ids(struct ids *ids, const struct trace_line *line)
 {
-	static const char *const ends[] = {"verify ", "has ",   "offers ",
-	                                   "area ",   "write ", "convert "};
-	static uint8_t was[SEQUENCE], is[SEQUENCE];
-	char *place = strchr(line, ' '), *arrow = strstr(line, " > "), *question, *answer;
-	size_t sent = 0, n = 0;
-	unsigned link;
+	static const char *const answers[] = {"run r 33 ", "run r 0F ", "path ", "search "};
+	char *question = line->question, *bytes = line->bytes;
+	size_t len = strlen(question);
 
-	place = place ? strchr(place + 1, ' ') : NULL;
-	question = place ? strchr(place + 1, ' ') : NULL;
-	if (*line == '#') {
-		visit_text(ids, line);
-		return;
-	}
-	if (!question || !arrow || arrow < ++question)
-		return;
-	link = isdigit((unsigned char)place[1]) ? (unsigned)strtoul(place + 1, NULL, 10) : LINKS;
-	answer = arrow + 3 + strcspn(arrow + 3, " ");
-	answer += *answer != 0;
-	if (begins(question, "run "))
-		n = get_bytes(question, arrow + 3, was, &sent);
-	if (begins(question, "run r ") && link < LINKS)
-		ids->search[link].position = 0;
 	if (begins(question, "run r 55") || begins(question, "run r 69"))
 		visit(ids, question + 8);
-	if (begins(question, "run r 33 ") || begins(question, "path ") ||
-	    begins(question, "run r 0F "))
-		visit(ids, answer);
-	for (; begins(question, "search ") && strlen(answer) >= 16; answer += 16)
-		visit(ids, answer);
-	for (size_t i = 0; i < sizeof(ends) / sizeof(ends[0]); i++)
-		if (begins(question, ends[i]) && arrow - question > 16)
-			visit(ids, arrow - 16);
-	if (begins(question, "triplet") && link < LINKS)
-		visit_triplet(ids, link, arrow + 3);
-	visit_text(ids, line);
-	if (!ids->replaces || !n || get_bytes(question, arrow + 3, is, &sent) != n ||
-	    memcmp(was, is, n) == 0)
+	else if (!begins(question, "run ") && len > 16)
+		visit(ids, question + len - 16);
+	for (size_t i = 0; i < sizeof(answers) / sizeof(answers[0]); i++)
+		if (begins(question, answers[i]))
+			visit(ids, bytes);
+	while (begins(question, "search ") && strlen(bytes) > 16)
+		visit(ids, bytes += 16);
+	if (line->place >= TRACE_NET)
 		return;
-	mend_checks(was, is, sent, n);
-	put_hex(arrow + 3 + strcspn(arrow + 3, " ") + 1, is + sent, n - sent);
+	if (begins(question, "run r "))
+		ids->search[line->place].position = 0;
+	if (begins(question, "triplet"))
+		visit_triplet(ids, line->place, line->answer);
+}
+
+static void visit_line(struct ids *ids, char *text)
+{
+	static uint8_t was[SEQUENCE], is[SEQUENCE];
+	struct trace_line line;
+	size_t sent = 0, n = 0, len;
+
+	if (!trace_cut(text, &line)) {
+		visit_text(ids, text);
+		return;
+	}
+	len = strlen(line.question);
+	if (begins(line.question, "run ") && len > strlen("run r "))
+		n = get_bytes(&line, was, &sent);
+	visit_ids(ids, &line);
+	visit_text(ids, line.question);
+	visit_text(ids, line.answer);
+	if (n && get_bytes(&line, is, &sent) == n && memcmp(was, is, n) != 0) {
+		mend_checks(was, is, sent, n);
+		put_hex(line.bytes, is + sent, n - sent);
+	}
+	line.question[-1] = line.question[len] = ' ';
 }
 
 static void visit_all(struct ids *ids, char *text)

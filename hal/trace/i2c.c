@@ -17,44 +17,54 @@ struct trace_adapter {
 	const struct bus_env *env;
 };
 
-#define UNDER(told, call, ...) \
-	((told)->under ? (told)->under->ops->call((told)->under, __VA_ARGS__) : 0)
+#define CAN_MOST (I2C_ANY | 0xff << 2)
 
-static struct trace_adapter *ask(struct i2c_adapter *adapter, const char *what, uint8_t address)
-{
-	struct trace_adapter *told = (struct trace_adapter *)adapter;
-
-	trace_ask(told->trace, told->env, "%s %02X", what, address);
-	return told;
-}
+#define TOLD(adapter) ((struct trace_adapter *)(adapter))
+#define ASK(adapter, ...) \
+	trace_ask(TOLD(adapter)->trace, TOLD(adapter)->env, TRACE_I2C, __VA_ARGS__)
+/* Of a recording: what the adapter below answers to the question. */
+#define UNDER(adapter, call, ...) \
+	(TOLD(adapter)->under ? TOLD(adapter)->under->ops->call(TOLD(adapter)->under, __VA_ARGS__) \
+	                      : 0)
 
 /* What was never asked is refused by the bus. */
-static int answer(struct trace_adapter *told, int result, uint8_t *bytes, size_t n)
+static int answer(struct i2c_adapter *adapter, int most, int result, uint8_t *bytes, size_t n)
 {
-	struct i2c_adapter *under = told->under;
+	struct i2c_adapter *under = TOLD(adapter)->under;
 	size_t got = under && result < 0 ? 0 : n;
 
-	result = trace_told(told->trace, told->env, &told->trace->i2c, result, bytes, &got);
+	result = trace_told(TOLD(adapter)->trace, most, result, bytes, &got);
 	if (!under && got && got < n)
 		memset(bytes + got, bytes[got - 1], n - got);
 	if (under) {
-		told->adapter.transfers = under->transfers;
-		told->adapter.bytes = under->bytes;
-		told->adapter.syscalls = under->syscalls;
-		told->adapter.holder = under->holder;
+		adapter->transfers = under->transfers;
+		adapter->bytes = under->bytes;
+		adapter->syscalls = under->syscalls;
+		adapter->holder = under->holder;
 	}
 	return result == -EHOSTDOWN ? -ENXIO : result;
 }
 
-/* Several messages that read are one answer. */
+/* Several messages that read are one answer: all, of what the messages have, or they get it. */
+static void copy_read(struct i2c_message *messages, size_t n, uint8_t *all, bool get)
+{
+	for (struct i2c_message *m = messages; m < messages + n; m++) {
+		if (!(m->flags & I2C_MESSAGE_READ))
+			continue;
+		memcpy(get ? m->data : all, get ? all : m->data, m->len);
+		all += m->len;
+	}
+}
+
 static int told_transfer(struct i2c_adapter *adapter, uint8_t address, struct i2c_message *messages,
                          size_t n)
 {
-	struct trace_adapter *told = ask(adapter, "transfer", address);
-	struct trace_text *question = &told->trace->question;
+	struct trace_text *question = &TOLD(adapter)->trace->question;
 	uint8_t all[4096];
-	size_t len = 0, at = 0;
+	size_t len = 0;
+	int result;
 
+	ASK(adapter, "transfer %02X", address);
 	for (size_t i = 0; i < n; i++)
 		if (messages[i].flags & I2C_MESSAGE_READ) {
 			trace_add(question, " r %u", messages[i].len);
@@ -65,57 +75,42 @@ static int told_transfer(struct i2c_adapter *adapter, uint8_t address, struct i2
 		}
 	if (len > sizeof(all))
 		return -EOPNOTSUPP;
-	int result = UNDER(told, transfer, address, messages, n);
-	for (size_t i = 0; told->under && i < n; i++)
-		if (messages[i].flags & I2C_MESSAGE_READ) {
-			memcpy(all + at, messages[i].data, messages[i].len);
-			at += messages[i].len;
-		}
-	result = answer(told, result, all, len);
-	for (size_t i = 0; !told->under && i < n; i++)
-		if (messages[i].flags & I2C_MESSAGE_READ) {
-			memcpy(messages[i].data, all + at, messages[i].len);
-			at += messages[i].len;
-		}
+	result = UNDER(adapter, transfer, address, messages, n);
+	if (TOLD(adapter)->under)
+		copy_read(messages, n, all, false);
+	result = answer(adapter, 0, result, all, len);
+	copy_read(messages, n, all, true);
 	return result;
 }
 
 static int told_write_byte(struct i2c_adapter *adapter, uint8_t address, uint8_t command)
 {
-	struct trace_adapter *told = ask(adapter, "write", address);
-
-	trace_add(&told->trace->question, " %02X", command);
-	return answer(told, UNDER(told, write_byte, address, command), NULL, 0);
+	ASK(adapter, "write %02X %02X", address, command);
+	return answer(adapter, 0, UNDER(adapter, write_byte, address, command), NULL, 0);
 }
 
 static int told_write_byte_data(struct i2c_adapter *adapter, uint8_t address, uint8_t command,
                                 uint8_t data)
 {
-	struct trace_adapter *told = ask(adapter, "write", address);
-
-	trace_add(&told->trace->question, " %02X%02X", command, data);
-	return answer(told, UNDER(told, write_byte_data, address, command, data), NULL, 0);
+	ASK(adapter, "write %02X %02X%02X", address, command, data);
+	return answer(adapter, 0, UNDER(adapter, write_byte_data, address, command, data), NULL, 0);
 }
 
 static int told_read_byte(struct i2c_adapter *adapter, uint8_t address)
 {
-	struct trace_adapter *told = ask(adapter, "read", address);
-
-	return answer(told, told->under ? told->under->ops->read_byte(told->under, address) : 0,
-	              NULL, 0);
+	ASK(adapter, "read %02X", address);
+	return answer(adapter, UINT8_MAX, UNDER(adapter, read_byte, address), NULL, 0);
 }
 
 static int told_claim(struct i2c_adapter *adapter, uint8_t address)
 {
-	struct trace_adapter *told = ask(adapter, "claim", address);
-
-	return answer(told, told->under ? told->under->ops->claim(told->under, address) : 0, NULL,
-	              0);
+	ASK(adapter, "claim %02X", address);
+	return answer(adapter, 0, UNDER(adapter, claim, address), NULL, 0);
 }
 
 static void told_release(struct i2c_adapter *adapter, uint8_t address)
 {
-	struct i2c_adapter *under = ((struct trace_adapter *)adapter)->under;
+	struct i2c_adapter *under = TOLD(adapter)->under;
 
 	if (under && under->ops->release)
 		under->ops->release(under, address);
@@ -123,7 +118,7 @@ static void told_release(struct i2c_adapter *adapter, uint8_t address)
 
 static void told_close(struct i2c_adapter *adapter)
 {
-	struct i2c_adapter *under = ((struct trace_adapter *)adapter)->under;
+	struct i2c_adapter *under = TOLD(adapter)->under;
 
 	if (under)
 		under->ops->close(under);
@@ -144,17 +139,19 @@ static const struct i2c_adapter_ops told_ops = {
 struct i2c_adapter *trace_adapter_of(struct tap *tap, const struct bus_env *env,
                                      struct i2c_adapter *under)
 {
-	struct trace *trace = (struct trace *)tap;
 	struct trace_adapter *told = calloc(1, sizeof(*told));
 	int can;
 
 	if (!told)
 		return under;
 	*told = (struct trace_adapter){
-		.adapter.ops = &told_ops, .under = under, .trace = trace, .env = env};
-	trace_ask(trace, env, "adapter");
-	can = answer(told, under ? (int)(under->combine | under->max_messages << 2) : 0, NULL, 0);
-	told->adapter.combine = can & 3;
-	told->adapter.max_messages = (unsigned)can >> 2;
+		.adapter.ops = &told_ops, .under = under, .trace = (struct trace *)tap, .env = env};
+	can = under ? (int)(under->combine | under->max_messages << 2) : 0;
+	ASK(&told->adapter, "adapter");
+	can = answer(&told->adapter, CAN_MOST, can, NULL, 0);
+	if (can >= 0) {
+		told->adapter.combine = can & 3;
+		told->adapter.max_messages = (unsigned)can >> 2;
+	}
 	return &told->adapter;
 }

@@ -4,10 +4,12 @@
  * recorded. What a link has (link_ops, link_facts) stands in the line "link". It makes one
  * transaction after the other (no run_many), so that a replay is asked the same.
  */
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "hal/chips/area.h"
+#include "hal/owfs/path.h"
 #include "hal/trace/links.h"
 #include "hal/wire/device.h"
 #include "hal/wire/driver.h"
@@ -19,42 +21,34 @@ struct trace_link {
 	struct link_facts facts;
 	struct link *under; /* NULL: it is replayed */
 	struct trace *trace;
-	struct trace_place place;
 	unsigned number;
 	struct trace_link *next;
 };
 
-enum { STRONG, SPLITS, RECOVER, SLOT, TRIPLET, PATH, SEARCH, VERIFY, DRIVER, WORDS };
-static const char *const words[WORDS] = {"strong", "splits", "recover", "slot",  "triplet",
-                                         "path",   "search", "verify",  "driver"};
+#define TOLD(link) ((struct trace_link *)(link))
+#define ASK(link, ...) trace_ask(TOLD(link)->trace, (link)->env, TOLD(link)->number, __VA_ARGS__)
+#define SAY(link, ...) trace_add(&TOLD(link)->trace->question, __VA_ARGS__)
+/* Of a recording: what the link below answers to the question; ops: its table that has the call. */
+#define UNDER(link, ops, call, ...) \
+	(TOLD(link)->under ? TOLD(link)->under->ops->call(TOLD(link)->under, __VA_ARGS__) : 0)
+#define ID(rom) id_text(rom, (char[ROM_TEXT_MAX]){0})
 
-#define ASK(told, ...) trace_ask((told)->trace, (told)->link.env, __VA_ARGS__)
-/* Of a recording: what the link below answers to the question. */
-#define UNDER(told, call, ...) \
-	((told)->under ? (told)->under->ops->call((told)->under, __VA_ARGS__) : 0)
-#define DRIVEN(told, call, ...) \
-	((told)->under ? (told)->under->driver->call((told)->under, __VA_ARGS__) : 0)
-
-static struct trace_link *told_of(struct link *link)
+static const char *id_text(const uint8_t *rom, char text[ROM_TEXT_MAX])
 {
-	return (struct trace_link *)link;
+	rom_print(rom, ROM_FIC, text);
+	return text;
 }
 
-static void add_bytes(struct trace_link *told, const uint8_t *bytes, size_t n)
+static void say_bytes(struct link *link, const uint8_t *bytes, size_t n)
 {
-	trace_bytes(&told->trace->question, bytes, n, false);
+	trace_bytes(&TOLD(link)->trace->question, bytes, n, false);
 }
 
-/* After an error the bytes mean nothing. */
-static int answer_bytes(struct trace_link *told, int result, uint8_t *bytes, size_t n)
+/* most: as trace_told(). After an error the bytes mean nothing. */
+static int answer(struct link *link, int most, int result, uint8_t *bytes, size_t n)
 {
 	n = result < 0 ? 0 : n;
-	return trace_told(told->trace, told->link.env, &told->place, result, bytes, &n);
-}
-
-static int answer(struct trace_link *told, int result)
-{
-	return answer_bytes(told, result, NULL, 0);
+	return trace_told(TOLD(link)->trace, most, result, bytes, &n);
 }
 
 static const char *after_word(enum link_after after)
@@ -64,160 +58,123 @@ static const char *after_word(enum link_after after)
 
 static int told_run(struct link *link, const struct link_part *part)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, part->reset ? "run r " : "run - ");
-	add_bytes(told, part->out, part->out_n);
-	trace_add(&told->trace->question, " %zu%s", part->in_n, after_word(part->after));
-	return answer_bytes(told, UNDER(told, run, part), part->in, part->in_n);
+	ASK(link, part->reset ? "run r " : "run - ");
+	say_bytes(link, part->out, part->out_n);
+	SAY(link, " %zu%s", part->in_n, after_word(part->after));
+	return answer(link, 0, UNDER(link, ops, run, part), part->in, part->in_n);
 }
 
 static int told_recover(struct link *link, enum link_rung rung)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "recover %d", (int)rung);
-	return answer(told, UNDER(told, recover, rung));
+	ASK(link, "recover %d", (int)rung);
+	return answer(link, 0, UNDER(link, ops, recover, rung), NULL, 0);
 }
 
 static int told_slot(struct link *link, bool out, enum link_after after)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "slot %d%s", out, after_word(after));
-	return answer(told, UNDER(told, slot, out, after));
+	ASK(link, "slot %d%s", out, after_word(after));
+	return answer(link, 1, UNDER(link, ops, slot, out, after), NULL, 0);
 }
 
 /* What is taken says which direction was asked for, where it counts: see anonymous.c. */
 static int told_triplet(struct link *link, bool direction)
 {
-	struct trace_link *told = told_of(link);
-	uint8_t asked = direction;
+	struct trace *trace = TOLD(link)->trace;
+	int bits;
 
-	ASK(told, "triplet");
-	int bits = UNDER(told, triplet, direction);
-	told->place.directions = &asked;
-	told->place.direction_n = 1;
-	bits = answer(told, bits >= 0 && (bits & 3) == 3 ? 7 : bits);
-	told->place.direction_n = 0;
-	return bits;
+	ASK(link, "triplet");
+	trace->directions[0] = direction;
+	trace->direction_n = 1;
+	bits = UNDER(link, ops, triplet, direction);
+	return answer(link, 7, bits >= 0 && (bits & 3) == 3 ? 7 : bits, NULL, 0);
 }
 
 static int told_path(struct link *link, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
 {
-	struct trace_link *told = told_of(link);
-	uint8_t both[16] = {0}, asked[8];
+	struct trace *trace = TOLD(link)->trace;
+	uint8_t both[16] = {0};
+	int err;
 
-	memcpy(asked, rom, sizeof(asked));
-	ASK(told, "path %02X", command);
-	int err = UNDER(told, path, command, rom, conflict);
-	if (told->under && !err) {
-		memcpy(both, rom, 8);
-		memcpy(both + 8, conflict, 8);
-	}
-	told->place.directions = asked;
-	told->place.direction_n = sizeof(asked);
-	err = answer_bytes(told, err, both, sizeof(both));
-	told->place.direction_n = 0;
+	ASK(link, "path %02X", command);
+	memcpy(trace->directions, rom, 8);
+	trace->direction_n = 8;
+	memcpy(both, rom, 8);
+	err = UNDER(link, ops, path, command, both, both + 8);
+	err = answer(link, 0, err, both, sizeof(both));
 	memcpy(rom, both, 8);
 	memcpy(conflict, both + 8, 8);
 	return err;
 }
 
 struct found {
+	struct trace *trace;
 	link_found *found;
 	void *ctx;
-	uint8_t roms[DEVICE_MAX * 8];
-	size_t n;
 };
 
 static int note_found(void *ctx, const uint8_t rom[8])
 {
-	struct found *found = ctx;
+	struct found *all = ctx;
 
-	if (found->n + 8 <= sizeof(found->roms)) {
-		memcpy(found->roms + found->n, rom, 8);
-		found->n += 8;
-	}
-	return found->found(found->ctx, rom);
+	trace_bytes(&all->trace->answer, rom, 8, false);
+	return all->found(all->ctx, rom);
 }
 
 static int told_search(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx)
 {
-	struct trace_link *told = told_of(link);
-	struct found all = {.found = found, .ctx = ctx};
-	size_t n = sizeof(all.roms);
+	struct found all = {TOLD(link)->trace, found, ctx};
+	uint8_t roms[DEVICE_MAX * 8];
+	size_t n = TOLD(link)->under ? 0 : sizeof(roms);
+	int result, err;
 
-	ASK(told, "search %s %02X", alarm ? "alarm" : "all", family);
-	int result = UNDER(told, search, alarm, family, note_found, &all);
-	if (told->under)
-		n = all.n;
-	int err = trace_told(told->trace, link->env, &told->place, result, all.roms, &n);
-	if (told->under)
-		return result;
-	for (size_t i = 0; i + 8 <= n && (!i || !result); i += 8)
-		result = found(ctx, all.roms + i);
+	ASK(link, "search %s %02X", alarm ? "alarm" : "all", family);
+	result = UNDER(link, ops, search, alarm, family, note_found, &all);
+	err = trace_told(all.trace, INT_MAX, result, roms, &n);
+	for (size_t i = 0; i + 8 <= n && !result; i += 8)
+		result = found(ctx, roms + i);
 	return err < 0 ? err : result;
 }
 
 static int told_verify(struct link *link, const uint8_t rom[8], bool alarm)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "verify %s ", alarm ? "alarm" : "all");
-	add_bytes(told, rom, 8);
-	return answer(told, UNDER(told, verify, rom, alarm));
+	ASK(link, "verify %s %s", alarm ? "alarm" : "all", ID(rom));
+	return answer(link, 1, UNDER(link, ops, verify, rom, alarm), NULL, 0);
 }
 
 /* --- Drivers --- */
 
 static bool told_has(struct link *link, const uint8_t rom[8])
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "has ");
-	add_bytes(told, rom, 8);
-	return answer(told, DRIVEN(told, has, rom)) > 0;
+	ASK(link, "has %s", ID(rom));
+	return answer(link, 1, UNDER(link, driver, has, rom), NULL, 0) > 0;
 }
 
 static bool told_offers(struct link *link, const uint8_t rom[8], const char *property, int element)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "offers %s %d ", property, element);
-	add_bytes(told, rom, 8);
-	return answer(told, DRIVEN(told, offers, rom, property, element)) > 0;
+	ASK(link, "offers %s %d %s", property, element, ID(rom));
+	return answer(link, 1, UNDER(link, driver, offers, rom, property, element), NULL, 0) > 0;
 }
 
 static int told_area_read(struct link *link, const uint8_t rom[8], const struct area *area,
                           unsigned at, uint8_t *bytes, unsigned n)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "area %s %u %u ", area->name, at, n);
-	add_bytes(told, rom, 8);
-	return answer_bytes(told, DRIVEN(told, area_read, rom, area, at, bytes, n), bytes, n);
+	ASK(link, "area %s %u %u %s", area->name, at, n, ID(rom));
+	return answer(link, 0, UNDER(link, driver, area_read, rom, area, at, bytes, n), bytes, n);
 }
 
 static int told_area_write(struct link *link, const uint8_t rom[8], const struct area *area,
                            unsigned at, const uint8_t *bytes, unsigned n)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "write %s %u ", area->name, at);
-	add_bytes(told, bytes, n);
-	trace_add(&told->trace->question, " ");
-	add_bytes(told, rom, 8);
-	return answer(told, DRIVEN(told, area_write, rom, area, at, bytes, n));
+	ASK(link, "write %s %u ", area->name, at);
+	say_bytes(link, bytes, n);
+	SAY(link, " %s", ID(rom));
+	return answer(link, 0, UNDER(link, driver, area_write, rom, area, at, bytes, n), NULL, 0);
 }
 
 static int told_convert(struct link *link, const uint8_t *rom, const char *what)
 {
-	struct trace_link *told = told_of(link);
-
-	ASK(told, "convert %s ", what);
-	add_bytes(told, rom, rom ? 8 : 0);
-	return answer(told, DRIVEN(told, convert, rom, what));
+	ASK(link, "convert %s %s", what, rom ? ID(rom) : "-");
+	return answer(link, 0, UNDER(link, driver, convert, rom, what), NULL, 0);
 }
 
 static const struct driver_ops told_driver = {
@@ -228,94 +185,60 @@ static const struct driver_ops told_driver = {
 	.convert = told_convert,
 };
 
-/* --- What a link has --- */
+/* --- What a link has: a word in its line, a member, and what that is here --- */
 
-static unsigned what_has(const struct link *link)
-{
-	const struct link_ops *ops = link->ops;
-	const bool has[WORDS] = {
-		[STRONG] = link->facts->strong, [SPLITS] = link->facts->splits,
-		[RECOVER] = ops->recover,       [SLOT] = ops->slot,
-		[TRIPLET] = ops->triplet,       [PATH] = ops->path,
-		[SEARCH] = ops->search,         [VERIFY] = ops->verify,
-		[DRIVER] = link->driver,
-	};
-	unsigned bits = 0;
-
-	for (unsigned i = 0; i < WORDS; i++)
-		bits |= has[i] ? 1u << i : 0;
-	return bits;
-}
-
-static void give(struct trace_link *told, const char *name, unsigned has)
-{
-	told->ops = (struct link_ops){
-		.name = name,
-		.run = told_run,
-		.recover = has >> RECOVER & 1 ? told_recover : NULL,
-		.slot = has >> SLOT & 1 ? told_slot : NULL,
-		.triplet = has >> TRIPLET & 1 ? told_triplet : NULL,
-		.path = has >> PATH & 1 ? told_path : NULL,
-		.search = has >> SEARCH & 1 ? told_search : NULL,
-		.verify = has >> VERIFY & 1 ? told_verify : NULL,
-	};
-	told->facts = (struct link_facts){.strong = has >> STRONG & 1, .splits = has >> SPLITS & 1};
-	told->link.driver = has >> DRIVER & 1 ? &told_driver : NULL;
-	told->link.ops = &told->ops;
-	told->link.facts = &told->facts;
-}
+#define WORDS(X) \
+	X(strong, facts.strong, true) \
+	X(splits, facts.splits, true) \
+	X(recover, ops.recover, told_recover) \
+	X(slot, ops.slot, told_slot) \
+	X(triplet, ops.triplet, told_triplet) \
+	X(path, ops.path, told_path) \
+	X(search, ops.search, told_search) \
+	X(verify, ops.verify, told_verify) \
+	X(driver, link.driver, &told_driver)
 
 static void record_link(struct trace_link *told, struct link *under)
 {
-	unsigned has = what_has(under);
+	const struct trace_link like = {.link = *under, .ops = *under->ops, .facts = *under->facts};
 
-	told->under = under;
-	give(told, under->ops->name, has);
+	told->ops.name = under->ops->name;
 	told->link.chip = under->chip;
-	ASK(told, "link %u", under->chip);
-	for (unsigned i = 0; i < WORDS; i++)
-		if (has >> i & 1)
-			trace_add(&told->trace->question, " %s", words[i]);
-	answer(told, 0);
+	ASK(&told->link, "link %u", under->chip);
+#define X(word, member, mine) \
+	if (like.member) { \
+		SAY(told, " " #word); \
+		told->member = mine; \
+	}
+	WORDS(X)
+#undef X
+	answer(&told->link, 0, 0, NULL, 0);
+	told->under = under;
 }
 
-static const struct trace_line *line_of_link(const struct trace *trace, unsigned n)
+static void replay_link(struct trace_link *told)
 {
-	for (unsigned i = 0; trace->line && i < trace->lines; i++)
-		if (strncmp(trace->line[i].question, "link ", 5) == 0 &&
-		    strtoul(trace->line[i].place, NULL, 10) == n)
-			return &trace->line[i];
-	return NULL;
-}
+	size_t first = told->trace->first[told->number];
+	const char *question = told->trace->line[first - 1].question;
 
-static void replay_link(struct trace_link *told, const struct trace_line *line)
-{
-	unsigned has = 0;
-
-	for (unsigned i = 0; i < WORDS; i++)
-		has |= strstr(line->question, words[i]) ? 1u << i : 0;
-	give(told, "replay", has);
-	told->link.chip = (unsigned)strtoul(line->question + 5, NULL, 10);
+	told->ops.name = "replay";
+	told->link.chip = (unsigned)strtoul(question + 5, NULL, 10);
+#define X(word, member, mine) \
+	if (strstr(question, " " #word)) \
+		told->member = mine;
+	WORDS(X)
+#undef X
 	/* The line of the link is no call */
-	told->place.told = true;
-	told->place.last = (size_t)(line - told->trace->line);
-}
-
-unsigned trace_link_count(const struct trace *trace)
-{
-	unsigned n = 0;
-
-	while (line_of_link(trace, n))
-		n++;
-	return n;
+	told->trace->last[told->number] = first;
 }
 
 struct link *trace_link_of(struct tap *tap, unsigned n, struct link *link)
 {
 	struct trace *trace = (struct trace *)tap;
-	const struct trace_line *line = line_of_link(trace, n);
 	struct trace_link *told = trace->links;
 
+	if (n >= (trace->file ? TRACE_NET : trace_link_count(trace)))
+		return link;
 	while (told && told->number != n)
 		told = told->next;
 	if (!told) {
@@ -325,14 +248,18 @@ struct link *trace_link_of(struct tap *tap, unsigned n, struct link *link)
 		told->next = trace->links;
 		trace->links = told;
 	}
-	*told = (struct trace_link){
-		.link.env = link->env, .trace = trace, .number = n, .next = told->next};
-	snprintf(told->place.name, sizeof(told->place.name), "%u", n);
+	*told = (struct trace_link){.link.env = link->env,
+	                            .link.ops = &told->ops,
+	                            .link.facts = &told->facts,
+	                            .ops.run = told_run,
+	                            .trace = trace,
+	                            .number = n,
+	                            .next = told->next};
 	if (trace->file)
 		record_link(told, link);
-	else if (line)
-		replay_link(told, line);
-	return trace->file || line ? &told->link : link;
+	else
+		replay_link(told);
+	return &told->link;
 }
 
 void trace_links_free(struct trace *trace)

@@ -6,6 +6,4 @@
 
 /* As tap.link. */
 struct link *trace_link_of(struct tap *tap, unsigned n, struct link *link);
-/* How many are recorded. */
-unsigned trace_link_count(const struct trace *trace);
 void trace_links_free(struct trace *trace);

@@ -7,10 +7,9 @@
  * A line is a question and its answer. The same functions stand in front of a link, where they
  * write down what it answers, and in place of it, where they look the answer up.
  *
- *   tap.c        a recording, or a replay, is begun and ended
+ *   tap.c        a recording, or a replay; the exchanges of connections, the answers of a bus
  *   links.c      the calls of links
  *   i2c.c        the transactions of an I2C adapter
- *   frames.c     the exchanges of connections, the answers of a bus
  *   trace.c      lines: written, read, looked up
  *   anonymous.c  other ids in place of those of a recording
  *
@@ -23,87 +22,89 @@
 #include "hal/bus/tap.h"
 
 #define TRACE_BEGIN "owsd trace 1\n"
-#define TRACE_MOST (4u << 20) /* bytes of a file */
-#define TRACE_LINES 65536     /* ... and what is read of it */
+#define TRACE_MOST (4u << 20)       /* bytes of a file; a recording has half of that at most */
+#define TRACE_LINES 65536           /* ... and what is read of it */
+#define TRACE_TEXT (TRACE_MOST / 8) /* bytes of a question or an answer, with NUL */
 
+/* Where a line was: the number of a link, or one of these. */
+enum trace_place { TRACE_NET = 64, TRACE_I2C, TRACE_BUS, TRACE_PLACES };
+
+/* What it has no room for is cut. */
 struct trace_text {
-	char *text; /* NULL: empty */
-	size_t len, room;
-};
-
-/* The lines of one link, connection or bus. */
-struct trace_place {
-	char name[8]; /* the number of a link, "net", "bus" */
-	bool quotes;  /* its bytes are mostly text */
-	bool told;    /* replay: last is a line */
-	size_t last;  /* ... that was given last */
-	/* Of a search: what is taken where devices differ; 8 bytes, or 1 of a triplet. */
-	const uint8_t *directions;
-	size_t direction_n;
+	size_t len;
+	char text[TRACE_TEXT];
 };
 
 struct trace_line {
-	const char *place, *question, *answer;
+	unsigned place;
+	char *question, *answer, *bytes; /* bytes: of the answer */
 	double took_ms;
-	size_t number;  /* in the file, from 1 on */
-	size_t before;  /* the line ahead of it of the same place, + 1; 0: none */
-	uint64_t chain; /* its question and answer, and those ahead in its transaction */
+	size_t number; /* in the file, from 1 on */
+	uint64_t key;  /* its question, and what is ahead of it in its transaction */
+	uint64_t next; /* ... with its answer */
 };
 
 struct trace_link;
 struct trace {
 	struct tap tap; /* first */
 	FILE *file;     /* where it is recorded; NULL: it is replayed */
-	size_t left;    /* bytes that may still be written */
+	size_t left;    /* bytes that may still be written; 0: lines are left out */
 	unsigned lines; /* written; replay: how many there are */
 	void (*progress)(const struct trace *trace); /* after each; NULL: nobody looks */
-	int64_t since_ns, begun_ns;
-	struct trace_text question, answer;
 	struct trace_link *links;
-	struct trace_place net, i2c, bus;
-	uint8_t *in; /* what came over the connection */
-	size_t in_n;
-	int64_t ended_ns; /* when that was; 0: nothing came */
+	/* The question, and what is known of its answer. */
+	struct trace_text question, answer;
+	const struct bus_env *env;
+	unsigned place;
+	int64_t since_ns, begun_ns;
+	int64_t ended_ns; /* of an exchange: when the last bytes came */
 	bool asked;       /* an exchange is under way */
+	/* Of a search: what is taken where devices differ; 8 bytes, or 1 of a triplet. */
+	uint8_t directions[8];
+	size_t direction_n;
 	/* Replay. */
 	const char *name; /* of the file */
 	char *text;
 	struct trace_line *line;
+	/* Of each place the first line, and the one that was given last; + 1, 0: none. */
+	size_t first[TRACE_PLACES], last[TRACE_PLACES];
+	uint64_t next[TRACE_PLACES]; /* of the last line */
 	unsigned notes;
 	int peer; /* the other end of what connect() gave; -1 */
 };
 
 /* Read the lines of a file. 0, -ENOMEM, or -EINVAL with the reason in why. */
 int trace_read(struct trace *trace, const char *name, char *why, size_t why_size);
-/* Is there a line of this place, as "net"? */
-bool trace_has(const struct trace *trace, const char *place);
-/* Free the lines and the texts. */
-void trace_free(struct trace *trace);
-/* Are lines left out, since the file would be too long? */
-bool trace_full(const struct trace *trace);
+/* Cut a line into its parts by two NUL in place of blanks. False: it has none, nothing is done. */
+bool trace_cut(char *text, struct trace_line *line);
+/* How many links are recorded. */
+unsigned trace_link_count(const struct trace *trace);
 
-/* Begins a question; more text may follow. */
-void trace_ask(struct trace *trace, const struct bus_env *env, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
 void trace_add(struct trace_text *text, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
-/* As hexadecimal digits, "-" if there are none; quoted: as text. */
+/*
+ * As hexadecimal digits, "-" if there are none; quoted: as text, which goes on with what is quoted
+ * at the end.
+ */
 void trace_bytes(struct trace_text *text, const uint8_t *bytes, size_t n, bool quoted);
 /* Reads what trace_bytes() wrote, n bytes at most: how many there are. */
 size_t trace_parse(const char *text, uint8_t *bytes, size_t n);
-void trace_result_text(struct trace_text *text, int result, const uint8_t *bytes, size_t n,
-                       bool quoted);
+#define TRACE_RESULT 20
+/* A number, or the name of an error. */
+const char *trace_result_text(int result, char text[TRACE_RESULT]);
+
+/* Begins a question; more text may follow. */
+void trace_ask(struct trace *trace, const struct bus_env *env, unsigned place, const char *format,
+               ...) __attribute__((format(printf, 4, 5)));
+/* A recording: the line of the question, whose answer came at that time. */
+void trace_write(struct trace *trace, int result, int64_t now_ns);
 /*
  * The answer to the question: recorded, or looked up, after the time that it took. Returns result,
- * or what is recorded as that; *n is the room in bytes, and gets their count then. -EHOSTDOWN: it
- * was never asked.
+ * or what is recorded as that: an error, or 0 to most. *n is the room in bytes, and gets their
+ * count then. -EHOSTDOWN: it was never asked.
  */
-int trace_told(struct trace *trace, const struct bus_env *env, struct trace_place *place,
-               int result, uint8_t *bytes, size_t *n);
+int trace_told(struct trace *trace, int most, int result, uint8_t *bytes, size_t *n);
 /* Replay: the next line with the question, which ends the time there is. NULL: none has it. */
-const struct trace_line *trace_find(struct trace *trace, const struct bus_env *env,
-                                    struct trace_place *place);
-int trace_result(const char *answer);
+const struct trace_line *trace_find(struct trace *trace);
 /* Tells the host of a replay something about it; after some it is silent. */
-void trace_note(struct trace *trace, const struct bus_env *env, const char *format, ...)
-	__attribute__((format(printf, 3, 4)));
+void trace_note(struct trace *trace, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -21,7 +21,7 @@ static struct bus_host host;
 size_t fuzz_memory(size_t n)
 {
 	/* the bus; each byte may be a line */
-	return 9000000 + 200 * n;
+	return 11000000 + 200 * n;
 }
 
 static void make_anonymous(const char *text)

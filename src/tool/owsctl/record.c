@@ -71,45 +71,49 @@ static int open_recording(struct recording *recording, const char *name)
 	return CTL_DONE;
 }
 
-/* What was recorded, with the target's kind alone where its address is to be hidden. */
+/* A remark; with the target's kind alone where its address is to be hidden. */
 static void write_command(const struct recording *recording, const struct ctl *ctl, int argc,
                           char **argv)
 {
 	const char *where, *target = ctl->target ? ctl->target : "owserver";
+	FILE *file = recording->trace.file;
 
-	if (recording->anonymous)
+	if (recording->anonymous && strcmp(target, "auto") != 0)
 		target = bus_backend(target, &where)->scheme;
-	fprintf(recording->trace.file, "# owsctl " OWSD_VERSION " -t %s", target);
-	for (int i = 0; i < argc; i++)
-		fprintf(recording->trace.file, " %s", argv[i]);
-	fputc('\n', recording->trace.file);
+	fprintf(file, "# owsctl " OWSD_VERSION " -t %s", target);
+	for (int i = 0; i < argc; i++) {
+		fputc(' ', file);
+		for (const char *c = argv[i]; *c; c++)
+			fputc((unsigned char)*c < ' ' ? '?' : *c, file);
+	}
+	fputc('\n', file);
 }
 
 static int close_recording(struct recording *recording, const char *name)
 {
-	FILE *file = recording->trace.file;
-	unsigned lines = recording->trace.lines;
-	bool full = trace_full(&recording->trace);
 	uint8_t mask[TRACE_MASK];
-	bool failed;
+	bool failed = false;
 
 	trace_end(&recording->trace);
 	if (recording->anonymous) {
-		failed = fclose(file) || getrandom(mask, sizeof(mask), 0) != sizeof(mask);
-		if (!failed)
+		failed = fclose(recording->trace.file) ||
+		         getrandom(mask, sizeof(mask), 0) != sizeof(mask);
+		if (!failed) {
 			trace_anonymous(recording->text, mask);
-		if (!failed)
 			fputs(recording->text, recording->file);
+		}
 		free(recording->text);
 	}
-	failed = ferror(recording->file) || fclose(recording->file);
+	failed |= ferror(recording->file) || fclose(recording->file);
 	if (recording->shown_ns)
 		fputs("\r\033[K", stderr);
 	if (failed)
 		return ctl_fail("%s: cannot be written", name);
-	ctl_tell("%s has %u lines%s%s", name, lines,
+	if (!recording->trace.lines && !unlink(name))
+		return ctl_fail("nothing went over a wire: there is no %s", name);
+	ctl_tell("%s has %u lines%s%s", name, recording->trace.lines,
 	         recording->anonymous ? ", without your ids" : "",
-	         full ? "; it is full: what followed is left out" : "");
+	         recording->trace.left ? "" : "; it is full: what followed is left out");
 	return CTL_DONE;
 }
 
@@ -118,7 +122,7 @@ static int record_verb(struct recording *recording, struct ctl *ctl, int argc, c
 {
 	int status = ctl_run(ctl, argc, argv);
 
-	while (!interrupted && !trace_full(&recording->trace) && ows_now() < recording->until_ns) {
+	while (!interrupted && recording->trace.left && ows_now() < recording->until_ns) {
 		if (!freopen("/dev/null", "w", stdout))
 			break;
 		int again = ctl_run(ctl, argc, argv);
@@ -133,11 +137,11 @@ static int record_verb(struct recording *recording, struct ctl *ctl, int argc, c
 int verb_record(struct ctl *ctl, int argc, char **argv)
 {
 	static char word[] = "scan", *scan[] = {word, NULL};
-	static struct recording recording;
-	const struct verb *verb;
+	static struct recording recording; /* too large for a stack */
 	const char *name;
 	int c, status;
 
+	memset(&recording, 0, sizeof(recording));
 	while ((c = ctl_option(ctl, argc, argv, "+NQE:")) != -1)
 		if (c == 'N')
 			recording.anonymous = true;
@@ -151,21 +155,26 @@ int verb_record(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "--i2c shows ids byte by byte: leave it out or --anonymous");
 	name = argv[optind++];
 	argc -= optind;
-	argv += optind;
-	verb = ctl->find(argc ? argv[0] : scan[0]);
+	argv = argc ? argv + optind : scan;
+	argc += !argc;
+	const struct verb *verb = ctl->find(argv[0]);
 	if (!verb || !verb->opens || verb == ctl->verb)
 		return ctl_usage(ctl, "%s opens no target: name scan, dir, read or write",
 		                 ctl_word(argv[0]));
+	/* the remark has these words, and no address */
+	for (int i = 1; i < argc; i++)
+		if (argv[i][0] == '-' && argv[i][1] != '-' && strchr(argv[i], 't'))
+			return ctl_usage(ctl, "-t stands before the file");
 	status = open_recording(&recording, name);
 	if (status)
 		return status;
-	write_command(&recording, ctl, argc ? argc : 1, argc ? argv : scan);
+	write_command(&recording, ctl, argc, argv);
 	ctl->tap = &recording.trace.tap;
 	ctl->verb = verb;
 	sigaction(SIGINT,
 	          &(struct sigaction){.sa_handler = interrupt, .sa_flags = (int)SA_RESETHAND},
 	          NULL);
-	status = record_verb(&recording, ctl, argc ? argc : 1, argc ? argv : scan);
+	status = record_verb(&recording, ctl, argc, argv);
 	c = close_recording(&recording, name);
 	return status ? status : c;
 }

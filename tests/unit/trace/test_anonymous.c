@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Other ids in a recording, wherever it has one. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "unity.h"
@@ -76,24 +77,76 @@ static void test_an_id_backwards_keeps_its_checksum(void)
 	TEST_ASSERT_EQUAL_STRING(line, text);
 }
 
-/* A page that has the id, with the CRC16 of command, address and data behind it. */
-static void test_data_with_an_id_get_a_right_checksum(void)
+static void put_crc16(const uint8_t *from, uint8_t *to)
 {
-	uint8_t rom[8], page[3 + 8 + 2] = {0xa5, 0x00, 0x00}, is[20];
-	char old[17], new[17];
-	uint16_t crc;
+	uint16_t crc = (uint16_t)~onewire_crc16(0, from, (size_t)(to - from));
+
+	to[0] = (uint8_t)crc;
+	to[1] = (uint8_t)(crc >> 8);
+}
+
+/*
+ * Two pages that have the id, with a CRC16 behind each: of command, address and data, and of data.
+ * In the first stands what would be a CRC16 of the id alone, and is none.
+ */
+static void test_data_with_an_id_get_right_checksums(void)
+{
+	uint8_t rom[8], page[3 + 10 + 2 + 8 + 2] = {0xa5, 0x00, 0x00}, is[sizeof(page)];
+	char old[17], new[17], select[40], digits[2 * sizeof(page) + 1];
+
+	for (int i = 0; i < 2; i++) {
+		id_of(0, rom, old);
+		memcpy(page + 3, rom, 8);
+		put_crc16(page + 3, page + 11);
+		put_crc16(page, page + 13);
+		memcpy(page + 15, rom, 8);
+		put_crc16(page + 15, page + 23);
+		for (size_t k = 0; k < sizeof(page); k++)
+			sprintf(digits + 2 * k, "%02X", page[k]);
+		snprintf(select, sizeof(select), i ? "CC" : "55%s", old);
+		sprintf(text, "# /28.%.12s\n0.0 0.0 0 run r %sA50000 22 > 0 %s\n", old + 2, select,
+		        digits + 6);
+		become(rom, new);
+		trace_anonymous(text, mask);
+		TEST_ASSERT_EQUAL_size_t(22, trace_parse(strstr(text, "> 0 ") + 4, is + 3, 22));
+		TEST_ASSERT_EQUAL_MEMORY(rom, is + 3, 8);
+		TEST_ASSERT_EQUAL_MEMORY(page + 11, is + 11, 2);
+		memcpy(is, page, 3);
+		TEST_ASSERT_TRUE(onewire_crc16_matches(onewire_crc16(0, is, 13), is + 13));
+		TEST_ASSERT_TRUE(onewire_crc16_matches(onewire_crc16(0, is + 15, 8), is + 23));
+	}
+}
+
+/* A recording of owsctl has none of these; that text has no room for digits. */
+static void test_a_text_where_digits_belong_is_left_alone(void)
+{
+	static const char *const lines[] = {
+		"0 0 0 path F0 > 0 \"abcdefgh\"",      "0 0 0 run r 33 8 > 0 \"abcdefgh",
+		"0 0 0 run r 55\"abcdefgh > 0",        "0 0 0 search all 00 > 0 \"abcdefghi\"",
+		"0 0 0 run r CCA5 9 > 0 \"abcdefgh\"", "0 0 0 run  > 0 00",
+	};
+
+	for (size_t i = 0; i < sizeof(lines) / sizeof(lines[0]); i++) {
+		char *copy = strdup(lines[i]);
+
+		trace_anonymous(copy, mask);
+		TEST_ASSERT_EQUAL_STRING(lines[i], copy);
+		free(copy);
+	}
+}
+
+/* As a remark that has a line end. */
+static void test_an_id_goes_where_there_is_no_line_too(void)
+{
+	char old[17];
+	uint8_t rom[8];
 
 	id_of(0, rom, old);
-	memcpy(page + 3, rom, 8);
-	crc = (uint16_t)~onewire_crc16(0, page, 11);
-	sprintf(text, "0.0 0.0 0 run r 55%sA50000 10 > 0 %s%02X%02X\n", old, old, crc & 255,
-	        crc >> 8);
-	become(rom, new);
+	sprintf(text, "owsd trace 1\n# a\n0 0 /28.%.12s > b\nx /28.%.12s\n%s", old + 2, old + 2,
+	        old);
 	trace_anonymous(text, mask);
-	TEST_ASSERT_EQUAL_size_t(10, trace_parse(strstr(text, "> 0 ") + 4, is + 3, 10));
-	TEST_ASSERT_EQUAL_MEMORY(rom, is + 3, 8);
-	memcpy(is, page, 3);
-	TEST_ASSERT_TRUE(onewire_crc16_matches(onewire_crc16(0, is, 11), is + 11));
+	TEST_ASSERT_NULL_MESSAGE(strstr(text, "551DDF"), text);
+	TEST_ASSERT_EQUAL_INT(0, strncmp(text, "owsd trace 1\n# a\n0 0 /28.", 25));
 }
 
 /* A line for each of the 64 triplets, as two ids on a wire give them. */
@@ -152,7 +205,9 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_an_id_is_the_same_one_everywhere);
 	RUN_TEST(test_an_id_backwards_keeps_its_checksum);
-	RUN_TEST(test_data_with_an_id_get_a_right_checksum);
+	RUN_TEST(test_data_with_an_id_get_right_checksums);
+	RUN_TEST(test_a_text_where_digits_belong_is_left_alone);
+	RUN_TEST(test_an_id_goes_where_there_is_no_line_too);
 	RUN_TEST(test_a_search_finds_the_new_ids_in_the_same_order);
 	RUN_TEST(test_without_a_mask_nothing_changes);
 	return UNITY_END();

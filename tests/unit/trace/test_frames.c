@@ -81,11 +81,29 @@ static void test_a_path_that_was_not_asked_is_told(void)
 	TEST_ASSERT_GREATER_THAN_UINT(0, host_events(&host, BUS_NOTE));
 }
 
+/* Its answer is in no file, as no replay could read that; nor in memory. */
+static void test_a_server_that_never_ends_fills_no_file(void)
+{
+	static const uint8_t bytes[4096];
+
+	trace.tap.sent(&trace.tap, &host.env, bytes, 1);
+	for (size_t i = 0; i < TRACE_MOST / sizeof(bytes); i++)
+		trace.tap.received(&trace.tap, &host.env, bytes, sizeof(bytes));
+	trace.tap.sent(&trace.tap, &host.env, bytes, 1);
+	TEST_ASSERT_EQUAL_size_t(0, trace.left);
+	fflush(out);
+	TEST_ASSERT_LESS_THAN_size_t(100, len);
+	TEST_ASSERT_NOT_NULL(strstr(text, "# it is full"));
+	trace_end(&trace);
+	fclose(out);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_replay_answers_as_the_server_did);
 	RUN_TEST(test_a_server_that_closed_closes_again);
 	RUN_TEST(test_a_path_that_was_not_asked_is_told);
+	RUN_TEST(test_a_server_that_never_ends_fills_no_file);
 	return UNITY_END();
 }

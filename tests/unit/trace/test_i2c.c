@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/ds2482/i2c.h"
 #include "hal/sim/bus.h"
 #include "hal/sim/replay.h"
 #include "hal/trace/tap.h"
@@ -104,9 +105,28 @@ static void test_the_driver_reads_the_same_of_a_replay(void)
 	}
 }
 
+/* The driver trusts what an adapter says of itself. */
+static void test_an_adapter_that_there_cannot_be_combines_nothing(void)
+{
+	static const char *const can[] = {"-1", "2147483647", "!EIO", ""};
+	char content[100], why[100];
+
+	for (size_t i = 0; i < sizeof(can) / sizeof(can[0]); i++) {
+		snprintf(content, sizeof(content), TRACE_BEGIN "0 0 i2c adapter > %s\n", can[i]);
+		put(content);
+		TEST_ASSERT_EQUAL_INT(0, trace_replay(&trace, file, why, sizeof(why)));
+		struct i2c_adapter *adapter = trace.tap.adapter(&trace.tap, &host.env, NULL);
+		TEST_ASSERT_EQUAL_INT(I2C_SMBUS_ONLY, adapter->combine);
+		TEST_ASSERT_EQUAL_UINT(0, adapter->max_messages);
+		adapter->ops->close(adapter);
+		trace_end(&trace);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_the_driver_reads_the_same_of_a_replay);
+	RUN_TEST(test_an_adapter_that_there_cannot_be_combines_nothing);
 	return UNITY_END();
 }

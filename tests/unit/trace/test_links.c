@@ -285,11 +285,39 @@ static void test_a_link_has_what_its_line_says(void)
 	TEST_ASSERT_EQUAL_PTR(&none, trace.tap.link(&trace.tap, 1, &none));
 }
 
+/* What a call cannot return by link.h is an error of the wire. */
+static void test_a_result_is_one_that_its_call_can_have(void)
+{
+	struct link none = {.env = &host.env};
+	const struct link_part part = {.reset = true};
+
+	text = strdup(TRACE_BEGIN "0 0 0 link 0 slot triplet verify recover > 0\n"
+	                          "0 0 0 run r - 0 > 5\n"
+	                          "0 0 0 run r - 0 > -9999\n"
+	                          "0 0 0 run r - 0 > !EWHATEVER\n"
+	                          "0 0 0 run r - 0 > !EADDRINUSE\n"
+	                          "0 0 0 slot 1 > 2\n"
+	                          "0 0 0 triplet > 8\n"
+	                          "0 0 0 verify all 2801020304050\n"
+	                          "0 0 0 recover 1 > 99999999999\n");
+	begin_replay();
+	struct link *link = trace.tap.link(&trace.tap, 0, &none);
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->run(link, &part));
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->run(link, &part));
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->run(link, &part));
+	TEST_ASSERT_EQUAL_INT(-EADDRINUSE, link->ops->run(link, &part));
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->slot(link, true, LINK_IDLE));
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->triplet(link, true));
+	TEST_ASSERT_EQUAL_INT(-EHOSTDOWN, link->ops->verify(link, one, false));
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->recover(link, LINK_CHIP_RESET));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_call_is_answered_as_it_was);
 	RUN_TEST(test_a_call_takes_the_time_that_it_took);
 	RUN_TEST(test_a_link_has_what_its_line_says);
+	RUN_TEST(test_a_result_is_one_that_its_call_can_have);
 	return UNITY_END();
 }
