@@ -22,7 +22,8 @@ struct map {
 
 /*
  * Take the places of a file. What the map has already wins. 0; a negative errno: the file cannot be
- * read, -ENOTSUP: it is a pipe or the like, -EINVAL: a line is none of places; *line: which, from 1.
+ * read, -ENOTSUP: it is a pipe or the like, -EINVAL: it is none of places; *line says where, from
+ * 1.
  */
 int map_read(struct map *map, const char *path, unsigned *line);
 /* A line of it. 0, -EINVAL or -ENOMEM. Pure. */
