@@ -192,6 +192,10 @@ def test_what_is_pasted_into_sqlite3_is_read_beside_the_recorder(scene):
         hole = [(g["name"], g["since"], g["until"]) for g in gaps if g["why"] == "recorder stopped"]
         ends = [wall(house.begun + at * MINUTE) for at in (HOLE.start, HOLE.stop)]
         assert all((name, *ends) in hole for name in ("room1", "relays")), gaps
+        command = re.search(r'^\$ (sqlite3 .*?")$', (SOURCE / "docs/history.md").read_text(), re.M | re.S)[1]
+        done = subprocess.run(["sh", "-c", command], text=True, capture_output=True, cwd=house.folder,
+                              timeout=owsdtest.PATIENCE, check=False)
+        assert re.search(r"^\d{4}-\d\d-\d\dT[\d:]{8}\.\d{3}Z\|[\d.]+\|\u00b0C\|good$", done.stdout, re.M), done
         # a reader that stays in the middle of its answer holds nobody up
         with contextlib.closing(sqlite3.connect(house.folder / "history.sqlite")) as slow:
             rows = slow.execute("select * from trend order by id")

@@ -181,6 +181,8 @@ def test_a_genuine_client_reads_what_is_served(scene):
         done = scene._run(["mbpoll", "-m", "tcp", "-p", port, "-0", "-1", *options, "127.0.0.1"], 20)
         assert done.returncode == 0, done
         return [float(value) for value in re.findall(r"^\[\d+\]:\s+(\S+)", done.stdout, re.M)]
+    page = re.search(r"^mbpoll (.*) -c 3 192\.168\.1\.10$", (owsdtest.SOURCE / "docs/modbus.md").read_text(), re.M)
+    assert poll(*page[1].split(), "-c", "2") == [21.5, -3.25]
     assert poll("-t", "4:float", "-B", "-r", "46002", "-c", "2") == [21.5, -3.25]
     assert poll("-t", "3", "-r", "43001", "-c", "2") == [GOOD, GOOD]
     assert poll("-t", "4:int", "-B", "-r", str(32 + LONG), "-c", "1") == [-33]

@@ -7,6 +7,7 @@ import contextlib
 import json
 import pathlib
 import re
+import shlex
 import signal
 import socket
 import subprocess
@@ -216,6 +217,30 @@ def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
     assert [c["stat_t"] for c in entity.values() if c.get("uniq_id", "").endswith("temperature")] == ["owsd/pi7/hall"], entity
     assert house.last(f"chip/{SENSOR}/problem") == chip
     until(lambda: "rename by user" in writer.log() and "for mqtt:127.0.0.1" in writer.log(), 20, writer.log)
+
+
+def test_what_the_page_says_to_the_broker_does_what_it_says(scene):
+    """The commands of docs/mqtt.md, as they stand there, and their answers."""
+    page = (owsdtest.SOURCE / "docs/mqtt.md").read_text()
+    house = ready(scene, ROOM, RELAY, Rename=raw("on"))
+    Writer(scene, house.daemon.config, house.daemon.name)
+    house.set("relay", "1")
+    house.arrives("relay", lambda m: m["good"])
+    # until then the broker gives it chip/get twice, for chip/+ and +/get
+    until(lambda: "Received UNSUBSCRIBE from owsd-pi7" in house.broker.process.log(), 40, "it has looked at what is kept")
+
+    def run(command):
+        name, *words = shlex.split(command)
+        return subprocess.run([program(name), "-p", str(house.broker.port), *words], capture_output=True, text=True,
+                              timeout=owsdtest.PATIENCE, check=False).stdout
+    asked = re.findall(r"^(mosquitto_rr .*)\n(\{.*)$", page, re.M)
+    assert len(asked) == 3, asked
+    for command, answer in asked:
+        said = json.loads(run(command + " -W 40"))
+        assert said == json.loads(answer) if answer.endswith("}") else said["devices"][0]["type"] == "DS18B20", (command, said)
+    assert house.face.stop() == 0 and house.kept("owsd/pi7/#")
+    run(re.search("^mosquitto_sub .* --remove-retained .*$", page, re.M)[0].replace("OLDNODE", "pi7"))
+    assert not house.kept("owsd/pi7/#"), house.kept("owsd/pi7/#")
 
 
 def test_a_flood_of_lists_and_renames_is_cut(scene):

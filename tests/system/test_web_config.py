@@ -4,11 +4,13 @@
 
 import json
 import re
+import shutil
 import socket
 import subprocess
 import threading
 
 import faulty
+import handbook
 import owsdtest
 from owsdtest import place, raw, until
 from test_web import ROOM, SENSOR, Page, both
@@ -52,6 +54,19 @@ def test_the_page_gets_the_file_its_model_and_the_table_of_keys(scene):
         "most": 86400, "repeats": False, "help": "time limit of a request, seconds", "empty": False}
     assert keys["item", "LimitH"]["least"] is None and keys["bus", "Touch"]["kind"] == "flag"
     assert all(k["help"] for k in keys.values())
+
+
+def test_what_the_page_has_curl_do_is_done(scene):
+    """docs/web-api.md, word for word but for the place of the socket."""
+    if not shutil.which("curl"):
+        owsdtest.skip("curl is not installed")
+    _, page = editor(scene)
+    events, checked = (subprocess.run(["sh", "-c", block.text.replace("/run/owsd/OWS.web", str(page.socket))], text=True,
+                                      capture_output=True, timeout=owsdtest.PATIENCE, check=True).stdout
+                       for block in handbook.blocks(owsdtest.SOURCE / "docs/web-api.md") if block.language == "sh")
+    assert "event: found" in events, events
+    problem, = json.loads(checked)["problems"]
+    assert problem["line"] == 2 and "Timeout" in problem["text"], problem
 
 
 def test_nobody_edits_unless_the_block_says_configure_on(scene):
