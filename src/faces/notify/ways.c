@@ -39,7 +39,7 @@ bool ways_has(const struct config_notify *notify, enum way_kind kind)
 	return way_key(notify, kind);
 }
 
-const char *ways_name(enum way_kind kind)
+static const char *ways_name(enum way_kind kind)
 {
 	static const char *const names[] = {"Mail", "EscalateMail", "Url", "Command"};
 

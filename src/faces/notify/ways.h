@@ -59,7 +59,6 @@ void ways_open(struct ways *ways, struct log *log, const char *instance,
 struct entry *ways_add(struct ways *ways);
 /* Is there something to be told by that way in the file? */
 bool ways_has(const struct config_notify *notify, enum way_kind kind);
-const char *ways_name(enum way_kind kind);
 /* Does it tell alarms that are escalated, or the others? */
 bool ways_tells(enum way_kind kind, bool escalated);
 /* Look at what is under way, and begin what is due. fd: ready for the POST; -1: none. */

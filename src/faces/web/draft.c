@@ -53,12 +53,15 @@ static void check_items(const char *text, size_t len, struct config_report *repo
 	free(child.out);
 }
 
-int draft_check(const char *file, const char *text, size_t len, struct problems *problems,
-                struct rio **rio)
+/*
+ * Check a text as owsd does, as far as it needs no device. rio: its document, with what could be
+ * read; free it. 0, -EINVAL (with an error in problems), -ENOMEM.
+ */
+static int check_text(const char *text, size_t len, struct problems *problems, struct rio **rio)
 {
 	struct config_report report = problems_report(problems), silent = {0};
 	struct config *config = NULL;
-	int err = config_parse(file, text, len, &report, &config);
+	int err = config_parse(NAME, text, len, &report, &config);
 
 	if (!err)
 		err = config_check_targets(config, &report);
@@ -70,7 +73,7 @@ int draft_check(const char *file, const char *text, size_t len, struct problems 
 	*rio = NULL;
 	if (err == -ENOMEM)
 		return err;
-	return rio_parse(file, text, len, &silent, rio) == -ENOMEM ? -ENOMEM : err;
+	return rio_parse(NAME, text, len, &silent, rio) == -ENOMEM ? -ENOMEM : err;
 }
 
 static void draft_answer(struct job *job, const struct rio *rio, int err,
@@ -112,10 +115,9 @@ static unsigned errors_of(const struct problems *problems)
 /* Does the text have fewer errors than that? */
 static bool is_better(const char *text, unsigned errors)
 {
-	static const char file[] = NAME;
 	struct problems before = {0};
 	struct rio *rio = NULL;
-	bool better = draft_check(file, text, strlen(text), &before, &rio) != -ENOMEM &&
+	bool better = check_text(text, strlen(text), &before, &rio) != -ENOMEM &&
 	              errors_of(&before) < errors;
 
 	problems_free(&before);
@@ -128,7 +130,7 @@ static void check(struct job *job, const struct rio *edited, const struct body *
 	bool checks = strcmp(body_string(body, "do"), "check") == 0;
 	struct problems problems = {0};
 	struct rio *rio = NULL;
-	int err = draft_check(NAME, edited->text, edited->len, &problems, &rio);
+	int err = check_text(edited->text, edited->len, &problems, &rio);
 
 	if (err == -ENOMEM || !rio)
 		job_error(job, 500, "no memory");

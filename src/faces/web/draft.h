@@ -16,12 +16,6 @@ struct request;
 
 int draft_post(struct request *request);
 
-/*
- * Check a text as owsd does, as far as it needs no device; file is for messages. rio: its document,
- * with what could be read; free it. 0, -EINVAL (with an error in problems), -ENOMEM.
- */
-int draft_check(const char *file, const char *text, size_t len, struct problems *problems,
-                struct rio **rio);
 /* Is it UTF-8 without NUL, so that JSON can carry it unchanged? */
 #define DRAFT_NO_TEXT "the file has bytes that are not UTF-8: save it as UTF-8 by an editor first"
 bool draft_is_text(const char *text, size_t len);
