@@ -777,9 +777,10 @@ def test_a_command_of_another_page_is_refused(scene):
 def served_paths():
     """What has data: (path, whether it is posted to)."""
     table = (owsdtest.SOURCE / "src/faces/web/api.c").read_text()
-    found = re.findall(r'\{"([a-z/]+)", (true|false), \w+\},', table)
-    assert len(found) > 15 and ("api/devices", "false") in found, found
-    return [("/" + path, posted == "true") for path, posted in found]
+    found = [("/" + path, ".post = true" in how)
+             for path, how in re.findall(r'\{"([a-z/]+)", (\.[^}]+)\},', table)]
+    assert len(found) > 20 and ("/api/devices", False) in found and ("/api/set", True) in found, found
+    return found
 
 
 def test_no_path_with_data_answers_what_another_site_has_a_browser_send(scene):
