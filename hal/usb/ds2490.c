@@ -179,7 +179,7 @@ static int reset_chip(struct ds2490 *chip)
 		err = send_all(chip, requests, 4);
 	if (!err)
 		err = expect(chip, is_clean, true);
-	chip->strong = false;
+	chip->strong &= err != 0;
 	chip->lost = err != 0;
 	return err;
 }
@@ -208,7 +208,7 @@ static int settle(struct ds2490 *chip)
 		err = send_all(chip, resume, 1);
 	if (!err)
 		err = expect(chip, is_clean, true);
-	chip->strong = false;
+	chip->strong &= err != 0;
 	chip->lost = err != 0;
 	return err == -EIO || err == -ETIMEDOUT ? reset_chip(chip) : err;
 }
@@ -220,10 +220,10 @@ static int end_strong(struct ds2490 *chip)
 
 	if (!chip->strong)
 		return 0;
-	chip->strong = false;
 	err = send_all(chip, halt, 1);
 	if (!err)
 		err = expect(chip, is_pulled_up, false);
+	chip->strong = err != 0;
 	if (!err)
 		err = send_all(chip, resume, 1);
 	return err ? lose(chip, err) : 0;

@@ -10,7 +10,7 @@ struct ds2490 {
 	struct usb_port *port; /* NULL: closed */
 	struct link_cost cost;
 	struct link_master_cost shared;
-	bool strong, lost; /* lost: what the chip does now is not known */
+	bool strong, lost; /* the pull-up may be on; what the chip does now is not known */
 	bool tells;        /* it has said of a reset that all is well */
 };
 

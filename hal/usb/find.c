@@ -48,6 +48,14 @@ static void read_key(const char *sysfs, const char *name, const char *key, char 
 			         line + len + 1);
 }
 
+bool usb_is_adapter(int fd)
+{
+	uint16_t device[9]; /* its descriptor; the kernel has its words in this machine's order */
+
+	return pread(fd, device, sizeof(device), 0) == sizeof(device) && device[4] == 0x04fa &&
+	       device[5] == 0x2490;
+}
+
 static int compare(const void *a, const void *b)
 {
 	return strverscmp(((const struct usb_place *)a)->name, ((const struct usb_place *)b)->name);

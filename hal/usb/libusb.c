@@ -178,7 +178,7 @@ static int adapter_open(const struct usb_place *place, struct usb_port **port, c
 	adapter->fd = open(place->device, O_RDWR | O_CLOEXEC);
 	err = adapter->fd < 0 ? -errno : chip_lock(adapter->fd, 0, &holder);
 	if (!err)
-		err = claim(adapter);
+		err = usb_is_adapter(adapter->fd) ? claim(adapter) : -ENODEV;
 	if (!err)
 		*port = &adapter->port;
 	else
@@ -204,7 +204,8 @@ static void give_back(const struct usb_place *place)
 
 	if (fd < 0)
 		return;
-	(void)ioctl(fd, (int)USBDEVFS_IOCTL, &connect); /* musl takes an int */
+	if (usb_is_adapter(fd))
+		(void)ioctl(fd, (int)USBDEVFS_IOCTL, &connect); /* musl takes an int */
 	close(fd);
 }
 

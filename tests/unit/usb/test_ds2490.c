@@ -415,6 +415,29 @@ static void test_a_transfer_that_fails_anywhere_spoils_one_transaction_and_no_va
 	}
 }
 
+/* Nobody else would end it, and the next device that is read would have it. */
+static void test_a_strong_pull_up_that_may_be_on_is_ended_when_the_adapter_is_closed(void)
+{
+	static const int errors[] = {-EIO, -ETIMEDOUT, -ECANCELED};
+	uint8_t out = 0xCC;
+	const struct link_part strong = {
+		.reset = true, .out = &out, .out_n = 1, .after = LINK_STRONG};
+
+	sticks_start(house);
+	for (unsigned n = 0; n < 25 * 6 * 3; n++) {
+		sticks.fail = errors[n % 3];
+		sticks.fail_at = sticks.transfers + 1 + n / 18;
+		(void)sticks.wire->ops->run(sticks.wire, &strong);
+		sticks.fail_at = sticks.transfers + 1 + n / 3 % 6;
+		(void)part_reset(sticks.wire);
+		sticks.fail_at = 0;
+		sticks.master->ops->close(sticks.master);
+		TEST_ASSERT_FALSE(sticks.stick[0].net.chip[0].wire[0].strong);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, sticks_try(), sticks.why);
+	}
+	sticks_check("t");
+}
+
 static void test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plugged_in(void)
 {
 	int err = -ENODEV;
@@ -491,6 +514,7 @@ int main(void)
 	RUN_TEST(test_an_endpoint_that_stalls_is_cleared);
 	RUN_TEST(test_an_adapter_that_does_not_answer_is_reset_by_its_hub_when_it_is_opened);
 	RUN_TEST(test_a_transfer_that_fails_anywhere_spoils_one_transaction_and_no_value);
+	RUN_TEST(test_a_strong_pull_up_that_may_be_on_is_ended_when_the_adapter_is_closed);
 	RUN_TEST(test_pulled_anywhere_the_adapter_is_gone_and_is_back_when_it_is_plugged_in);
 	RUN_TEST(test_a_shutdown_ends_every_wait);
 	RUN_TEST(test_what_a_transaction_costs_is_counted);

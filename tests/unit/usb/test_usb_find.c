@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The adapters that are plugged in, by files like those of the kernel; and what one says. */
 #include <errno.h>
+#include <fcntl.h>
 #include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,12 +120,35 @@ static void test_a_state_is_read_from_its_packet_and_a_device_that_arrives_is_no
 	TEST_ASSERT_EQUAL_HEX8(SHORT, state.results);
 }
 
+/* As the kernel has it in the device file, with more descriptors after it. */
+static void test_a_device_file_is_that_of_an_adapter_by_its_descriptor(void)
+{
+	const uint16_t adapter[12] = {[4] = 0x04fa, [5] = 0x2490},
+		       other[9] = {[4] = 0x0403, [5] = 0x2490},
+		       old[9] = {[4] = 0x04fa, [5] = 0x2491};
+	char path[80];
+	int fd;
+
+	snprintf(path, sizeof(path), "%s/001", folder);
+	fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, fd);
+	TEST_ASSERT_FALSE(usb_is_adapter(fd));
+	TEST_ASSERT_EQUAL(sizeof(other), pwrite(fd, other, sizeof(other), 0));
+	TEST_ASSERT_FALSE(usb_is_adapter(fd));
+	TEST_ASSERT_EQUAL(sizeof(old), pwrite(fd, old, sizeof(old), 0));
+	TEST_ASSERT_FALSE(usb_is_adapter(fd));
+	TEST_ASSERT_EQUAL(sizeof(adapter), pwrite(fd, adapter, sizeof(adapter), 0));
+	TEST_ASSERT_TRUE(usb_is_adapter(fd));
+	TEST_ASSERT_EQUAL(0, close(fd));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_state_is_read_from_its_packet_and_a_device_that_arrives_is_no_result);
 	RUN_TEST(test_adapters_are_listed_with_their_files_and_drivers);
 	RUN_TEST(test_there_may_be_none_no_usb_or_more_than_anybody_has);
+	RUN_TEST(test_a_device_file_is_that_of_an_adapter_by_its_descriptor);
 	RUN_TEST(test_one_that_has_gone_or_gives_no_rights_is_explained);
 	return UNITY_END();
 }
