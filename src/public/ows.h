@@ -462,8 +462,8 @@ uint32_t ows_log_last(struct ows *h);
 int ows_log_line(struct ows *h, uint32_t number, struct ows_log_line *line);
 
 /*
- * The reload that owsd refused last: text says why, number counts those since a reload was taken
- * over last. -ENOENT: none, so what owsd serves was loaded last. -EIO: owsd died while it wrote.
+ * The reload that owsd refused last: text says why, number counts those since one was taken over;
+ * level 4: a restart takes the file. -ENOENT: none: it was loaded last. -EIO: owsd died meanwhile.
  */
 int ows_refused_reload(struct ows *h, struct ows_log_line *line);
 

@@ -269,7 +269,7 @@ struct ows_log_entry { /* 280 bytes */
 };
 /*
  * In OWS_AREA_REFUSED: number counts the reloads that were refused since this image was made, text
- * says why the last one was. 0: what is served was loaded last.
+ * says why the last one was (level 4: a restart takes it). 0: what is served was loaded last.
  * In OWS_AREA_NOTES: why the target is down; while it is up what disturbs it; "": nothing.
  */
 

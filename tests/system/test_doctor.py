@@ -5,6 +5,7 @@
 import json
 import os
 import stat
+import subprocess
 
 import owsdtest
 import recorded
@@ -112,7 +113,7 @@ def test_a_path_that_is_wrong_is_the_first_line(scene):
 def test_an_owserver_that_is_away_is_the_first_line(scene):
     port = owsdtest.free_port()
     daemon = scene.owsd(owsdtest.rio(f"localhost:{port}", [LIVING]))
-    said = first_lines(scene, daemon, f"127.0.0.1:{port}: Connection refused; does an owserver run")
+    said = first_lines(scene, daemon, f"owsd says: 127.0.0.1:{port}: Connection refused; does an owserver run")
     assert f"target localhost:{port} is down" in said
     found = json.loads(scene.owsctl(daemon, "--json", "doctor").stdout)
     assert found[0]["kind"] == "todo" and found[0]["check"] == "targets" and not found[0]["safe"]
@@ -129,6 +130,14 @@ def test_a_refused_reload_is_the_first_line_until_it_is_taken(scene):
     daemon.config.write_text(good)
     said = first_lines(scene, daemon, f"sudo owsctl -n {daemon.name} reload")
     assert "a reload was refused" in said
+    daemon.config.write_text(good.replace("  Item", f'  Listen "{owsdtest.free_port()}"\n  Item', 1))
+    assert scene.owsctl(daemon, "reload").returncode == 1
+    first_lines(scene, daemon, f"sudo systemctl restart owsd@{daemon.name}")
+    daemon.config.write_text(good.replace("living", "restart"))  # a name is no advice
+    daemon.config.write_text(daemon.config.read_text().replace("double", "doubel", 1))
+    assert scene.owsctl(daemon, "reload").returncode == 1
+    daemon.config.write_text(good)
+    first_lines(scene, daemon, f"sudo owsctl -n {daemon.name} reload")
     assert scene.owsctl(daemon, "reload").returncode == 0
     well(scene, daemon)
 
@@ -144,7 +153,7 @@ def test_a_history_that_cannot_be_written_is_the_first_line(scene):
     scene.until(lambda: scene.get(daemon, "cellar") == "12.5", 30, "the temperature arrives")
     (scene.path / "past" / "history.sqlite").mkdir(parents=True)
     recorded.record(scene, daemon, wait=False, directory=scene.path / "past")
-    said = first_lines(scene, daemon, f"{scene.path}/past cannot be written: ")
+    said = first_lines(scene, daemon, f"owsd-recorder says: {scene.path}/past cannot be written: ")
     assert "history.sqlite is in the way: move it away" in said and "   owsd-recorder: " in said
 
 
@@ -153,7 +162,7 @@ def test_a_database_that_is_away_is_the_first_line(scene):
     block = f'  Influx {{ Url "http://127.0.0.1:{owsdtest.free_port()}/write" ClockWait 0.1 }}\n'
     daemon = scene.owsd(owsdtest.rio(f"sim:{plant}", [LIVING]).replace("  Item", block + "  Item", 1))
     scene.start([owsdtest.BUILD / "owsd-influx", "-n", daemon.name, "-c", daemon.config])
-    first_lines(scene, daemon, "the server is lost: look at Url")
+    first_lines(scene, daemon, "owsd-influx says: the server is lost: look at Url")
 
 
 def stand_ins(scene, *programs, says=""):
@@ -208,13 +217,20 @@ def test_enable_shows_each_command_and_the_address_of_the_page(scene):
 def test_what_is_safe_is_run_by_fix_and_shown(scene):
     if os.geteuid() != 0:
         owsdtest.skip("only root may have it mended")
-    asked = stand_ins(scene, "timedatectl", says="Timezone=UTC\\nNTP=no\\nNTPSynchronized=no\\n")
+    stand_ins(scene, "timedatectl", says="Timezone=UTC\\nCanNTP=yes\\nNTP=no\\nNTPSynchronized=no\\n")
+    asked = stand_ins(scene, "systemd-tmpfiles")
     daemon = house(scene, "")
+    stand_ins(scene, "systemctl", says=f"owsd@{daemon.name}.service loaded active running\\n")
     scene.until(lambda: scene.get(daemon, "cellar") == "12.5", 30, "the temperature arrives")
-    done = scene.owsctl(daemon, "doctor", "--fix")
-    assert done.stdout.splitlines()[0] == "+ timedatectl set-ntp true", done
-    assert asked.read_text().splitlines() == ["timedatectl show", "timedatectl set-ntp true",
-                                              "timedatectl show"]
+    # of a machine that has lost /run/owsd; the signals of this one are elsewhere
+    lost = 'mount -t tmpfs tmpfs /run && exec "$@"'
+    done = subprocess.run(["unshare", "-m", "sh", "-c", lost, "sh", owsdtest.OWSCTL, "-n", daemon.name, "doctor", "--fix"],
+                          capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
+    assert done.stdout.splitlines()[0] == "+ systemd-tmpfiles --create", done
+    # what somebody may have decided is left
+    assert "    sudo timedatectl set-ntp true" in done.stdout, done
+    asked = [line for line in asked.read_text().splitlines() if not line.startswith("systemctl list-units")]
+    assert asked == ["timedatectl show", "systemd-tmpfiles --create", "timedatectl show"], asked
 
 
 def test_a_full_disk_is_the_first_line(scene):

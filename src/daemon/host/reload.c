@@ -178,13 +178,14 @@ struct control *host_control(const struct host *h)
 	return h->control;
 }
 
-void host_refused(struct host *h, const char *why)
+void host_refused(struct host *h, int err, const char *why)
 {
 	char text[OWS_LINE];
 	size_t len = printable_cut(why, sizeof(text) - 1);
 
 	memcpy(text, why, len);
-	image_refused(&h->now->memory.image, ows_now(), text, printable(text, len));
+	image_refused(&h->now->memory.image, ows_now(), err == -ERESTART, text,
+	              printable(text, len));
 	__atomic_fetch_add(&h->refused_reloads, 1, __ATOMIC_RELAXED);
 }
 
@@ -198,7 +199,7 @@ int host_reload(struct host *h, struct config *config, char *why, size_t why_siz
 		snprintf(why, why_size,
 		         "Listen, ListenSocket, ListenAllow and ListenReadOnly "
 		         "change by a restart only");
-		return -EBUSY;
+		return -ERESTART;
 	}
 	snprintf(why, why_size, "%s", strerror(ENOMEM));
 	if (h->serve && serve_prepare(h->serve, config))

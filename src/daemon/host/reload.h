@@ -14,15 +14,15 @@ bool host_may_reload(const struct host *host);
 /* Where programs ask for a reload, and are answered. Supervisor only. */
 struct control *host_control(const struct host *host);
 /*
- * A configuration was refused: consumers see why until one is taken over or owsd ends. Supervisor
- * only.
+ * A configuration was refused: consumers see why until one is taken over or owsd ends; err is what
+ * host_reload() returned. Supervisor only.
  */
-void host_refused(struct host *host, const char *why);
+void host_refused(struct host *host, int err, const char *why);
 /*
  * Serve another configuration without a gap: signals of the same name, path and type go on with
  * value, quality, alarms and retries, targets with the same options stay open. Blocks until the
  * reload is done. Returns 0 (the host owns config), or a negative errno with the reason in why:
- * then nothing changes. Only when host_may_reload().
+ * then nothing changes. -ERESTART: a restart would take it. Only when host_may_reload().
  */
 int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
 

@@ -259,7 +259,7 @@ static void reload(struct host *host, const struct arguments *a, struct log *log
 	if (!err) {
 		report_served(host, a, log, notify);
 	} else {
-		host_refused(host, why);
+		host_refused(host, err, why);
 		notify_status(notify, "reload refused, all goes on as before: %s", why);
 	}
 	control_answer(host_control(host), err, why);

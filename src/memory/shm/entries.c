@@ -80,9 +80,9 @@ void image_log(struct image *image, int64_t time_ns, uint32_t level, const char 
 	write_entry(&image->log[entry.number % image->log_lines], &entry, sizeof(entry));
 }
 
-void image_refused(struct image *image, int64_t time_ns, const char *why, size_t len)
+void image_refused(struct image *image, int64_t time_ns, bool restart, const char *why, size_t len)
 {
-	struct ows_log_entry entry = {.time_ns = time_ns, .level = 3};
+	struct ows_log_entry entry = {.time_ns = time_ns, .level = restart ? 4 : 3};
 
 	if (!image->refused)
 		return;

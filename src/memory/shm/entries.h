@@ -22,7 +22,7 @@ void image_device(struct image *image, uint32_t place, const struct ows_device_e
 /* A line of the log, cut to the room for it; the number is set here, after that of the last. */
 void image_log(struct image *image, int64_t time_ns, uint32_t level, const char *text, size_t len);
 /* A reload was refused, and why; counted here. */
-void image_refused(struct image *image, int64_t time_ns, const char *why, size_t len);
+void image_refused(struct image *image, int64_t time_ns, bool restart, const char *why, size_t len);
 /* What is to be said of a target since time_ns; "": nothing. */
 void image_note(struct image *image, uint32_t target, int64_t time_ns, const char *text);
 /* Continue the log of the previous image in this one, with its numbers. */

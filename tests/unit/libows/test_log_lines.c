@@ -112,9 +112,12 @@ static void test_a_refused_reload_is_known_with_its_reason_until_the_next_image(
 	struct ows_log_line line;
 
 	TEST_ASSERT_EQUAL(-ENOENT, ows_refused_reload(h, &line));
-	image_refused(&in.image, 5, "a.rio:1:1: no and rest", strlen("a.rio:1:1: no"));
-	image_refused(&in.image, 7, "a.rio:2:1: no and rest", strlen("a.rio:2:1: no"));
+	image_refused(&in.image, 5, true, "a.rio:1:1: no and rest", strlen("a.rio:1:1: no"));
 	TEST_ASSERT_EQUAL(0, ows_refused_reload(h, &line));
+	TEST_ASSERT_EQUAL_UINT(4, line.level);
+	image_refused(&in.image, 7, false, "a.rio:2:1: no and rest", strlen("a.rio:2:1: no"));
+	TEST_ASSERT_EQUAL(0, ows_refused_reload(h, &line));
+	TEST_ASSERT_EQUAL_UINT(3, line.level);
 	TEST_ASSERT_EQUAL_UINT(2, line.number);
 	TEST_ASSERT_EQUAL_INT64(7, line.time_ns);
 	TEST_ASSERT_EQUAL_STRING("a.rio:2:1: no", line.text);
@@ -128,7 +131,7 @@ static void test_a_long_reason_is_cut_and_ends(void)
 	char why[2 * OWS_LINE] = "";
 
 	memset(why, 'x', sizeof(why) - 1);
-	image_refused(&in.image, 5, why, sizeof(why));
+	image_refused(&in.image, 5, false, why, sizeof(why));
 	TEST_ASSERT_EQUAL(0, ows_refused_reload(h, &line));
 	TEST_ASSERT_EQUAL_UINT(OWS_LINE - 1, strlen(line.text));
 	image_note(&in.image, 1, 5, why);

@@ -63,6 +63,14 @@ static FILE *make_file(const char *name)
 	return file;
 }
 
+static void write_file(const char *name, const char *text)
+{
+	FILE *file = make_file(name);
+
+	fputs(text, file);
+	fclose(file);
+}
+
 /* The text with the folder in place of each ROOT. */
 static void put_root(const char *text, char *to, size_t size)
 {
@@ -178,7 +186,8 @@ static void test_only_commands_that_change_no_plant_are_safe(void)
 		"sudo systemctl restart owsd-web@OWS ssh",
 		"sudo systemctl restart owsd-[a-z]@OWS",
 		"sudo systemctl restart owsd-",
-		"sudo timedatectl set-ntp trueish",
+		"sudo timedatectl set-ntp true", /* somebody has switched it off */
+		"owsd-mqtt says: sudo systemctl restart owsd-web@OWS",
 		"sudo reboot",
 		"echo dtoverlay=w1-gpio | sudo tee -a /boot/firmware/config.txt && sudo reboot",
 	};
@@ -187,6 +196,40 @@ static void test_only_commands_that_change_no_plant_are_safe(void)
 		TEST_ASSERT_TRUE_MESSAGE(doctor_is_safe(yes[i]), yes[i]);
 	for (size_t i = 0; i < sizeof(no) / sizeof(no[0]); i++)
 		TEST_ASSERT_FALSE_MESSAGE(doctor_is_safe(no[i]), no[i]);
+}
+
+/* Of a program that was taken over, what it reports and what it logs. */
+static void test_words_of_a_program_are_never_a_command_of_this_one(void)
+{
+	static const char report[] = "pid 1\nbeat 1\nstatus lost\ntrouble sudo systemd-sysusers\n";
+	char first[600];
+
+	unpack("tests/unit/data/machines/broker-away.machine", first, sizeof(first));
+	write_file("run/owsd/OWS.owsd-mqtt", report);
+	doctor_at_root(" --json");
+	holds(out, "\"remedy\":\"owsd-mqtt says: sudo systemd-sysusers\",\"safe\":false");
+	unpack("tests/unit/data/machines/port-in-use.machine", first, sizeof(first));
+	write_file("recorded/journal-owsd@OWS.service", "sudo systemd-sysusers\n");
+	doctor_at_root(" --json");
+	holds(out, "\"remedy\":\"owsd@OWS.service says: sudo systemd-sysusers\",\"safe\":false");
+}
+
+static void test_the_clock_is_set_by_who_may_and_is_left_to_who_decides(void)
+{
+	static const char *const cases[][2] = {
+		{"CanNTP=no\nNTP=no\n", "    sudo apt install systemd-timesyncd\n"},
+		{"CanNTP=yes\nNTP=no\n", "    sudo timedatectl set-ntp true\n"},
+		{"CanNTP=yes\nNTP=yes\n", "    timedatectl timesync-status\n"}};
+	char first[600], text[64];
+
+	unpack("tests/unit/data/machines/nothing-wrong.machine", first, sizeof(first));
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		snprintf(text, sizeof(text), "Timezone=UTC\n%sNTPSynchronized=no\n", cases[i][0]);
+		write_file("recorded/timedatectl", text);
+		doctor_at_root("");
+		holds(out, "note: nobody sets the clock");
+		holds(out, cases[i][1]);
+	}
 }
 
 static void test_a_command_is_run_without_a_shell(void)
@@ -304,6 +347,8 @@ int main(void)
 	RUN_TEST(test_json_has_the_same_with_what_is_safe);
 	RUN_TEST(test_a_wrong_file_is_reported_once_and_not_by_each_service);
 	RUN_TEST(test_only_commands_that_change_no_plant_are_safe);
+	RUN_TEST(test_words_of_a_program_are_never_a_command_of_this_one);
+	RUN_TEST(test_the_clock_is_set_by_who_may_and_is_left_to_who_decides);
 	RUN_TEST(test_a_command_is_run_without_a_shell);
 	RUN_TEST(test_signals_with_the_same_fault_are_one_finding_and_a_short_is_the_first);
 	RUN_TEST(test_words_that_cannot_be_are_refused);

@@ -271,6 +271,8 @@ void check_clock(struct doctor *d)
 		return;
 	report_add(&d->found, BOARD_NOTE,
 	           "nobody sets the clock: history has the time of this machine");
-	report_remedy(&d->found, strstr(d->text, "\nNTP=no") ? "sudo timedatectl set-ntp true"
-	                                                     : "timedatectl timesync-status");
+	/* somebody may have switched it off, or there is nobody who would */
+	report_remedy(&d->found, strstr(d->text, "CanNTP=no") ? "sudo apt install systemd-timesyncd"
+	                         : strstr(d->text, "\nNTP=no") ? "sudo timedatectl set-ntp true"
+	                                                       : "timedatectl timesync-status");
 }

@@ -40,6 +40,12 @@ struct doctor {
 	char text[DOCTOR_TEXT]; /* what a command printed last */
 };
 
+/*
+ * A remedy in the words of a program: its name, the words. One that was taken over writes them too,
+ * and who reads them is root, so they never look like a command of owsctl's.
+ */
+#define SEEN_SAYS "%s says: %s"
+
 /* The output of a command, in d->text; of a recorded machine its file recorded/NAME. */
 bool seen_output(struct doctor *d, const char *name, const char *const words[]);
 /* Is the user a member of the group, by etc/group? */

@@ -36,7 +36,7 @@ static void report_failure(struct doctor *d, const struct unit *unit)
 	report_add(&d->found, BOARD_MISSING, "%s fails (%s)", unit->id, unit->sub);
 	/* programs say in their last line what is wrong, and what to do */
 	if (*words)
-		report_remedy(&d->found, "%s", words);
+		report_remedy(&d->found, SEEN_SAYS, unit->id, words);
 	else
 		report_remedy(&d->found, "sudo journalctl -u %s -n 20", unit->id);
 }
@@ -99,10 +99,9 @@ static void check_refused(struct doctor *d)
 	report_add(&d->found, BOARD_MISSING,
 	           "owsd goes on with what it loaded before: a reload was refused %s ago: %s",
 	           when_span(d->now_ns - refused.time_ns, span), refused.text);
-	/* what only a restart can change is said in the text */
 	report_remedy(&d->found,
-	              strstr(refused.text, "restart") ? "sudo systemctl restart owsd@%s"
-	                                              : "sudo owsctl -n %s reload",
+	              refused.level == 4 ? "sudo systemctl restart owsd@%s"
+	                                 : "sudo owsctl -n %s reload",
 	              d->instance);
 }
 
@@ -170,7 +169,7 @@ static void check_report(struct doctor *d, const struct faces_one *face)
 		              face->program, d->instance);
 	} else if (*face->trouble && !face->since_ns) {
 		report_add(&d->found, BOARD_MISSING, "%s: %s", face->program, face->status);
-		report_remedy(&d->found, "%s", face->trouble);
+		report_remedy(&d->found, SEEN_SAYS, face->program, face->trouble);
 	} else if (is_older(d, face) && !d->errors) {
 		report_add(&d->found, BOARD_MISSING,
 		           "%s has not read the file since it was changed", face->program);

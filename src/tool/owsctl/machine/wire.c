@@ -49,7 +49,10 @@ static void report_target(struct doctor *d, int index, const char *names, bool u
 		when_span(d->now_ns - note.time_ns, span);
 	report_add(&d->found, BOARD_MISSING, "target %s is %s%s%s", names,
 	           up ? "disturbed" : "down", noted ? ", for " : "", span);
-	report_remedy(&d->found, "%s", noted ? note.text : quality_remedy(OWS_Q_TARGET));
+	if (noted)
+		report_remedy(&d->found, SEEN_SAYS, "owsd", note.text);
+	else
+		report_remedy(&d->found, "%s", quality_remedy(OWS_Q_TARGET));
 }
 
 /* A wire that no way reaches is one fault. Of its ways that counts which this board may have. */
