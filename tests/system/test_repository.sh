@@ -120,9 +120,19 @@ echo other >package/other
 deb 1.1+deb12 amd64
 refuses 'with other bytes' "$old"
 
+cp -r tree older
+
 # From the old key to the new one
 rm -r debs package/other
 deb 1.2+deb12 amd64
+mkdir bin
+cat >bin/cp <<'END'
+#!/bin/sh
+case $* in *tree/pool/*) head -c 100 "$1" >"$2" && exit 1 ;; esac
+exec /bin/cp "$@"
+END
+chmod 755 bin/cp
+! PATH="$PWD/bin:$PATH" repository "$old" || fail 'a disk that is full is no error'
 made "$old" "$new"
 gets 1.2+deb12 'with the old key, of both'
 user bookworm
@@ -156,3 +166,17 @@ rm -rf machine/cache && mkdir -p machine/cache/archives/partial
 printf x | dd of=tree/pool/bookworm/owsd_1.3+deb12_amd64.deb bs=1 seek=100 conv=notrunc 2>/dev/null
 rm owsd_*.deb
 denied 'hash sum mismatch' 'a changed package' download owsd
+
+# A mirror that shows an older tree: who has seen the newer one keeps that
+rm -rf tree && cp -r whole tree
+gets 1.3+deb12 'before the older one'
+rm -rf tree && cp -r older tree
+rm -f owsd_*.deb
+apt update || true
+apt download --print-uris owsd || { cat apt.log; fail 'no address after the older tree'; }
+grep -q 'owsd_1.3.*deb12_amd64.deb' apt.log || { cat apt.log; fail 'an older tree is taken'; }
+user bookworm
+gets 1.1+deb12 'a new machine, which knows no newer one'
+! grep -r Valid-Until tree/dists || fail 'a tree that stands still has an end'
+made --valid 1 "$new"
+grep -q "^Valid-Until: $(LC_ALL=C date -u -d 'tomorrow' '+%a, %d %b %Y')" tree/dists/bookworm/Release || fail 'no end after a day'
