@@ -307,6 +307,16 @@ def test_root_takes_nothing_but_a_file_of_what_the_scan_left(scene):
         assert secret.read_text() == "of root\n"
 
 
+def test_root_makes_no_file_where_a_link_leads(scene):
+    first = First(scene)
+    first.state.mkdir()
+    (first.state / "firstboot.done").symlink_to(first.here / "nologin")
+    assert first.half("look").returncode == 0
+    done = first.half("put")
+    assert done.returncode == 0 and "cannot write" in done.stderr, done
+    assert not (first.here / "nologin").exists()
+
+
 def test_the_half_of_the_first_start_that_runs_as_root_runs_no_program_of_ours(scene):
     first = First(scene)
     assert first.half("look").returncode == 0 and first.found.exists()

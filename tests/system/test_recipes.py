@@ -26,6 +26,7 @@ from owsdtest import SOURCE
 BOARD = SOURCE / "board"
 VERSION = re.search(r"^VERSION *:= *(\S+)", (SOURCE / "Makefile").read_text(), re.M)[1]
 FACES = [re.split(r" *\| *", line) for line in (BOARD / "faces").read_text().splitlines() if line[0] != "#"]
+BUILDROOT_S60 = "buildroot/package/owsd/S60owsd"
 BUILDROOT = "e991fa071605a78c17adba2ed26e07c3b8c95583"
 IMAGER = "72ad1179ff46a8355291898416fe65cbe6bbd450"
 ALPINE = "https://dl-cdn.alpinelinux.org/alpine/v3.20/releases/x86_64/alpine-minirootfs-3.20.3-x86_64.tar.gz"
@@ -158,6 +159,32 @@ install:
 	$(OWSD_INSTALL_TARGET_CMDS)
 	$(OWSD_INSTALL_INIT_SYSV)
 """
+
+
+def test_the_script_of_buildroot_follows_no_link_that_a_program_has_left(scene):
+    """What root does in a folder of a program, it does as that program; beside it are stand-ins."""
+    top, tools = scene.path / "top", scene.path / "bin"
+    script = re.sub(r"(?<![\w.])/(run|var/lib|var/run|usr/sbin|etc/default)/", rf"{top}/\1/",
+                    (BOARD / BUILDROOT_S60).read_text())
+    script = scene.file("S60owsd", script.replace('OWSD_FACES=""', 'OWSD_FACES="recorder"'))
+    for folder in (tools, *(top / name for name in ("run", "var/lib", "var/run", "usr/sbin"))):
+        folder.mkdir(parents=True)
+    stand_ins = {"install": f'mkdir -p "$(eval echo \\"\\$$#\\")"; echo "install $*" >>{top}/asked',
+                 "su": f'echo "su $3" >>{top}/asked; shift 3; exec sh "$@"',
+                 "start-stop-daemon": "exit 1", "logger": "cat >/dev/null"}
+    for name, text in stand_ins.items():
+        (tools / name).write_text(f"#!/bin/sh\n{text}\n")
+    for name in ("owsd", "owsd-recorder"):
+        (top / "usr/sbin" / name).write_text("#!/bin/sh\n")
+    for file in (*tools.iterdir(), *(top / "usr/sbin").iterdir()):
+        file.chmod(0o755)
+    run("sh", script, "start", cwd=scene.path, PATH=f"{tools}:{os.environ['PATH']}")
+    asked = (top / "asked").read_text().replace(str(top), "").splitlines()
+    assert "su owsd-recorder" in asked and (top / "var/lib/owsd-recorder/OWS").is_dir(), asked
+    assert (top / "run/owsd-recorder/OWS").is_dir() and not (top / "run/owsd/OWS").exists(), asked
+    given = {word for line in asked if line.startswith("install") for word in line.split() if word.startswith("/")}
+    assert given == {"/run/owsd", "/var/lib/owsd", "/run/owsd-recorder", "/var/lib/owsd-recorder"}, given
+    assert "install -d -m 755 -o owsd -g owsd /run/owsd" in asked, asked
 
 
 def test_the_recipe_of_buildroot_builds_the_faces_that_are_chosen(scene):
