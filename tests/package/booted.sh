@@ -142,6 +142,8 @@ finish() {
 	exit 0
 }
 
+[ -e rebooted ] || [ ! -d was ] || . ./upgraded.sh
+
 if [ -e rebooted ]; then
 	takes 'after a reboot' $packages
 else
