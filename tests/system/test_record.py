@@ -153,10 +153,14 @@ def test_the_recordings_of_tests_traces_have_the_answers_that_they_had(scene):
     files = sorted(TRACES.glob("*.trace"))
     assert files
     for file in files:
-        words = file.read_text().splitlines()[1].split()[5:]  # owsctl 0.10.0 -t TARGET VERB
+        text = file.read_text()
+        words = text.splitlines()[1].split()[5:]  # owsctl 0.10.0 -t TARGET VERB
         done = scene.owsctl(None, "-t", f"replay:{file}", *words, seconds=90)
         assert done.stdout or "wrong checksum" in done.stderr, (file, done)
         assert not re.search(r"\bwas .*, is |never asked", done.stderr), (file, done.stderr)
+        if words[0] == "read":
+            values = re.findall(r'bus read "[^"]*" > 0 " *([^"]*)"', text)
+            assert done.stdout.splitlines() == values, (file, done.stdout)
 
 
 if __name__ == "__main__":
