@@ -23,6 +23,19 @@ static inline int64_t later_ns(int64_t a, int64_t b)
 	return a > b ? a : b;
 }
 
+static inline struct timespec timespec_of(int64_t ns)
+{
+	return (struct timespec){.tv_sec = (time_t)(ns / NS_PER_S),
+	                         .tv_nsec = (long)(ns % NS_PER_S)};
+}
+
+static inline void clock_pause(int64_t ns)
+{
+	const struct timespec t = timespec_of(ns);
+
+	nanosleep(&t, NULL);
+}
+
 /* What a clock of clock_gettime() has. */
 static inline int64_t clock_ns(clockid_t clock)
 {

@@ -69,13 +69,8 @@ static int poll_once(struct worker *worker, int fd, short events, int64_t until_
 	struct pollfd fds[2] = {{.fd = worker->wake_fd, .events = POLLIN},
 	                        {.fd = fd, .events = events}};
 	int64_t left = until_ns - clock_ns(CLOCK_BOOTTIME);
-	struct timespec t = {0};
+	struct timespec t = timespec_of(left > 0 ? earlier_ns(left, LONGEST_WAIT) : 0);
 
-	if (left > LONGEST_WAIT)
-		left = LONGEST_WAIT;
-	if (left > 0)
-		t = (struct timespec){.tv_sec = (time_t)(left / NS_PER_S),
-		                      .tv_nsec = (long)(left % NS_PER_S)};
 	if (ppoll(fds, fd >= 0 ? 2 : 1, &t, NULL) <= 0)
 		return 0;
 	if (fds[0].revents)
@@ -340,8 +335,7 @@ const struct worker_message *worker_next(struct worker *worker)
 int worker_stop(struct worker *worker, int64_t timeout_ns)
 {
 	int64_t until = clock_ns(CLOCK_MONOTONIC) + timeout_ns;
-	struct timespec t = {.tv_sec = (time_t)(until / NS_PER_S),
-	                     .tv_nsec = (long)(until % NS_PER_S)};
+	struct timespec t = timespec_of(until);
 	int err = 0;
 
 	if (!worker->started)

@@ -8,7 +8,6 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -257,7 +256,6 @@ static int try_lock(const char *path)
 
 int replace_lock(const char *file)
 {
-	const struct timespec pause = {.tv_nsec = LOCK_PAUSE};
 	char path[LOCK_PATH];
 	int fd = lock_path(file, path);
 
@@ -265,7 +263,7 @@ int replace_lock(const char *file)
 		return fd;
 	fd = try_lock(path);
 	for (int i = 0; fd == -EAGAIN && i < LOCK_TRIES; i++) {
-		nanosleep(&pause, NULL);
+		clock_pause(LOCK_PAUSE);
 		fd = try_lock(path);
 	}
 	return fd == -EAGAIN ? -EBUSY : fd;

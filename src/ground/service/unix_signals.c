@@ -43,8 +43,7 @@ void unix_signals_wait(struct unix_signals *signals, const int fds[2], int64_t a
 	struct pollfd polled[] = {{.fd = signals->fd, .events = POLLIN},
 	                          {.fd = fds[0], .events = POLLIN},
 	                          {.fd = fds[1], .events = POLLIN}};
-	struct timespec t = {.tv_sec = (time_t)(at_most_ns / NS_PER_S),
-	                     .tv_nsec = (long)(at_most_ns % NS_PER_S)};
+	struct timespec t = timespec_of(at_most_ns);
 
 	ppoll(polled, 3, &t, NULL);
 	unix_signals_take(signals);

@@ -2,7 +2,6 @@
 /* What all that commands has in common, and the beat, the acknowledgement and the shelving. */
 #include <errno.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -99,14 +98,13 @@ int ows_acknowledge(struct ows *h, int id)
 /* Wait until owsd has acted on the request of that count; returns what owsd answered. */
 static int await_shelf(struct ows *h, const struct ows_command_shelf *shelf, uint32_t count)
 {
-	const struct timespec nap = {.tv_nsec = NS_PER_MS};
 	int64_t until_ns = ows_now() + SHELF_PATIENCE_NS;
 	int err;
 
 	while (__atomic_load_n(&shelf->done, __ATOMIC_ACQUIRE) != count) {
 		if (ows_now() >= until_ns)
 			return -ETIMEDOUT;
-		nanosleep(&nap, NULL);
+		clock_pause(NS_PER_MS);
 		if (!give_is_live(&h->give))
 			return -ESTALE;
 	}

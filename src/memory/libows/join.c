@@ -225,7 +225,7 @@ bool join_await(int fd, int64_t until_ns)
 {
 	struct pollfd poll_fd = {.fd = fd, .events = POLLIN};
 	int64_t left = until_ns - ows_now();
-	struct timespec t = {.tv_sec = (time_t)(left / NS_PER_S), .tv_nsec = left % NS_PER_S};
+	struct timespec t = timespec_of(left);
 
 	if (left <= 0)
 		return false;

@@ -17,7 +17,7 @@
 /* Is something to be read? Returns 1, 0, or a negative errno; also 0 when owsd has hung up. */
 static int news_await(int fd, int64_t left_ns, bool *gone)
 {
-	struct timespec t = {.tv_sec = (time_t)(left_ns / NS_PER_S), .tv_nsec = left_ns % NS_PER_S};
+	struct timespec t = timespec_of(left_ns);
 	struct pollfd poll_fd = {.fd = fd, .events = POLLIN};
 	int n = ppoll(&poll_fd, 1, &t, NULL);
 

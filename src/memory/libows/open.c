@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "hal/base/time.h"
 #include "src/memory/libows/alive.h"
@@ -129,7 +128,6 @@ static void take_map(struct ows *h, const struct ows_map *map)
 /* Become a controller of the image that is there, which may be replaced meanwhile. */
 static int open_joined(struct ows *h)
 {
-	const struct timespec nap = {.tv_nsec = 10 * NS_PER_MS};
 	int64_t until_ns = ows_now() + OPEN_NS;
 	int err = 0;
 
@@ -143,7 +141,7 @@ static int open_joined(struct ows *h)
 		if (ows_now() >= until_ns)
 			return -ETIMEDOUT;
 		if (h->join.connection < 0)
-			nanosleep(&nap, NULL);
+			clock_pause(10 * NS_PER_MS);
 		err = map_open(h->dir, h->instance, &map);
 		if (!err) {
 			map_close(&h->map);

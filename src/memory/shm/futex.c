@@ -26,10 +26,7 @@ _Static_assert(sizeof(time_t) == sizeof(long), "the futex call needs its 64-bit 
 int segment_wait(const uint32_t *word, uint32_t seen, int64_t timeout_ns)
 {
 	int64_t ns = timeout_ns < LONGEST_NS ? timeout_ns : LONGEST_NS;
-	struct timespec ts = {
-		.tv_sec = (time_t)(ns / NS_PER_S),
-		.tv_nsec = (long)(ns % NS_PER_S),
-	};
+	struct timespec ts = timespec_of(ns);
 	int saved = errno, err = 0;
 
 	if (syscall(FUTEX_CALL, word, FUTEX_WAIT, seen, timeout_ns < 0 ? NULL : &ts, NULL, 0) < 0)

@@ -117,7 +117,7 @@ void porter_end(struct porter *p)
 	if (is_starting(p))
 		end_lanes(p->next);
 	while (p->pid && waitpid(p->pid, NULL, WNOHANG) == 0 && left_ns > 0) {
-		porter_pause(NS_PER_MS);
+		clock_pause(NS_PER_MS);
 		left_ns -= NS_PER_MS;
 	}
 	munmap(p->shared, sizeof(*p->shared));

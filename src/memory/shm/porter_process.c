@@ -12,7 +12,6 @@
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
@@ -39,14 +38,6 @@ struct process {
 	int lanes[PORTER_LANES];
 	pid_t pid;
 };
-
-void porter_pause(int64_t ns)
-{
-	const struct timespec t = {.tv_sec = (time_t)(ns / NS_PER_S),
-	                           .tv_nsec = (long)(ns % NS_PER_S)};
-
-	nanosleep(&t, NULL);
-}
 
 void porter_lay_out(struct porter_message *m, struct iovec bytes)
 {
@@ -134,7 +125,7 @@ static void wait_until_given(const struct porter_shared *shared, unsigned lane, 
 
 	while ((int32_t)(__atomic_load_n(&shared->given[lane], __ATOMIC_ACQUIRE) - sequence) < 0 &&
 	       left_ns > 0) {
-		porter_pause(NS_PER_MS / 10);
+		clock_pause(NS_PER_MS / 10);
 		left_ns -= NS_PER_MS / 10;
 	}
 }
@@ -235,7 +226,7 @@ static bool start_child(struct process *p, unsigned lane, struct children *of)
 	ended = pid < 0 || wait_for(pid, &status);
 	/* too many processes, no memory, a child that is killed: the orders wait */
 	if (pid < 0 || status) {
-		porter_pause(LOOK_MS * NS_PER_MS);
+		clock_pause(LOOK_MS * NS_PER_MS);
 		return false;
 	}
 	for (unsigned i = 0; !ended && i < CHILDREN; i++)
@@ -313,7 +304,7 @@ static void leave_children(struct children *children)
 		for (unsigned i = 0; i < PORTER_LANES; i++)
 			n += count_children(&children[i]);
 		if (n)
-			porter_pause(NS_PER_MS);
+			clock_pause(NS_PER_MS);
 		left_ns -= NS_PER_MS;
 	}
 }

@@ -36,4 +36,3 @@ void porter_attach(struct msghdr *header, union porter_attached *control, const 
 void porter_carry_out(unsigned what, const int *fds, unsigned count, struct iovec bytes);
 /* After a fork: be the porter of these lanes, and end with them. */
 _Noreturn void porter_main(const int *lanes, struct porter_shared *shared);
-void porter_pause(int64_t ns);
