@@ -19,6 +19,7 @@
 struct tty {
 	struct serial_port port;
 	int fd;
+	struct termios set;
 };
 
 static struct tty *tty_of(struct serial_port *port)
@@ -47,18 +48,12 @@ static speed_t code_of(unsigned baud)
 
 static int tty_speed(struct serial_port *port, unsigned baud)
 {
-	struct termios set, is;
-	int fd = tty_of(port)->fd;
+	struct tty *tty = tty_of(port);
+	struct termios is;
 
-	port->syscalls += 3;
-	if (tcgetattr(fd, &set))
-		return gone(errno);
-	cfmakeraw(&set);
-	set.c_cflag = (set.c_cflag & ~(tcflag_t)(CRTSCTS | CSTOPB | PARENB)) | CLOCAL | CREAD | CS8;
-	set.c_cc[VMIN] = 1; /* with 0 a read of nothing returns 0, as that of a port that is gone */
-	set.c_cc[VTIME] = 0;
-	cfsetspeed(&set, code_of(baud));
-	if (tcsetattr(fd, TCSANOW, &set) || tcgetattr(fd, &is))
+	port->syscalls += 2;
+	cfsetspeed(&tty->set, code_of(baud));
+	if (tcsetattr(tty->fd, TCSANOW, &tty->set) || tcgetattr(tty->fd, &is))
 		return errno == EINVAL ? -ENOTTY : gone(errno);
 	return cfgetospeed(&is) == code_of(baud) ? 0 : -ENOTTY;
 }
@@ -89,19 +84,15 @@ static int tty_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 	return 0;
 }
 
-/* A port that was pulled is ready at once, and has nothing. */
+/* What has come is there at once, mostly. A port that was pulled is ready, and has nothing. */
 static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t until_ns)
 {
 	const struct bus_env *env = port->env;
 
 	for (;;) {
-		int ready = env->wait(env->ctx, tty_of(port)->fd, POLLIN, until_ns);
-
-		if (ready <= 0)
-			return ready;
-		port->syscalls++;
 		ssize_t came = read(tty_of(port)->fd, bytes, n);
 
+		port->syscalls++;
 		if (came > 0) {
 			port->bytes += (size_t)came;
 			return (int)came;
@@ -112,6 +103,10 @@ static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t 
 			return gone(errno);
 		if (bus_now(env) >= until_ns)
 			return 0;
+		int ready = env->wait(env->ctx, tty_of(port)->fd, POLLIN, until_ns);
+
+		if (ready <= 0)
+			return ready;
 	}
 }
 
@@ -155,21 +150,34 @@ static void ask_low_latency(int fd)
 	(void)ioctl(fd, TIOCSSERIAL, &serial);
 }
 
+/* As adapters need it, but for the speed. */
+static int set_up(struct tty *tty)
+{
+	struct termios *set = &tty->set;
+
+	if (tcgetattr(tty->fd, set))
+		return -ENOTTY;
+	cfmakeraw(set);
+	set->c_cflag = (set->c_cflag & ~(tcflag_t)(CRTSCTS | CSTOPB | PARENB)) | CLOCAL | CREAD |
+	               CS8;
+	set->c_cc[VMIN] =
+		1; /* with 0 a read of nothing returns 0, as that of a port that is gone */
+	set->c_cc[VTIME] = 0;
+	return 0;
+}
+
 int tty_open(const char *path, const struct bus_env *env, struct serial_port **port, int *holder)
 {
 	struct tty *tty = calloc(1, sizeof(*tty));
-	int err = 0;
+	int err;
 
 	if (!tty)
 		return -ENOMEM;
 	*holder = 0;
 	tty->port = (struct serial_port){.ops = &tty_ops, .env = env};
 	tty->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-	if (tty->fd < 0)
-		err = -errno;
-	else if (!isatty(tty->fd))
-		err = -ENOTTY;
-	else
+	err = tty->fd < 0 ? -errno : set_up(tty);
+	if (!err)
 		err = chip_lock(tty->fd, 0, holder);
 	if (err) {
 		if (tty->fd >= 0)
