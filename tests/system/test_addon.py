@@ -30,6 +30,7 @@ from test_web_ingress import ANNA, ask
 
 INSIDE = "OWSD_TEST_IN_ADDON"
 HOST, TOKEN = "local-owsd", "f00dfeed"
+PASSWORD = 'pass "w\\nord'  # what JSON, a shell and a .rio have an escape for
 NAMES = f"localhost supervisor core-mosquitto {HOST}"
 FILES = SOURCE / "board/addon"
 ROOM, NEW, SWITCH = "28.A0B1C2000001", "28.A0B1C2000007", "29.A0B1C2000004"
@@ -86,6 +87,11 @@ class Answer(http.server.BaseHTTPRequestHandler):
         self.wfile.write(body)
 
     def permitted(self):
+        for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+            with contextlib.suppress(OSError):
+                words = path.read_bytes()
+                if b"curl" in words and TOKEN.encode() in words:
+                    self.server.wrong.append(("every process sees the token", words))
         right = self.headers["Host"] == "supervisor" and self.headers["Authorization"] == f"Bearer {TOKEN}"
         if not right:
             self.server.wrong.append((self.path, str(self.headers)))
@@ -125,7 +131,7 @@ class House:
         self.scene = scene
         self.broker = mqtthouse.Broker(scene, lines=("allow_anonymous true", f"password_file {self.passwords()}"))
         self.service = {"addon": "core_mosquitto", "host": "core-mosquitto", "port": self.broker.port, "ssl": False,
-                        "username": "addons", "password": "pass word", "protocol": "3.1.1"}
+                        "username": "addons", "password": PASSWORD, "protocol": "3.1.1"}
         self.supervisor = Supervisor(self.service if broker else None)
         self.socket = scene.path / "i2c.socket"
         self.wire = self.chip(wire)
@@ -140,7 +146,7 @@ class House:
 
     def passwords(self):
         path = self.scene.file("passwords", "")
-        subprocess.run([mqtthouse.program("mosquitto_passwd"), "-b", path, "addons", "pass word"], check=True,
+        subprocess.run([mqtthouse.program("mosquitto_passwd"), "-b", path, "addons", PASSWORD], check=True,
                        capture_output=True)
         return path
 
@@ -245,7 +251,8 @@ def test_nothing_is_typed_and_a_replaced_chip_keeps_its_history(scene):
         house.wire.stop()
         house.wire = house.chip(WIRE.format(NEW, 18.25))
         until(lambda: judge.state("sensor.temperature1") == "unavailable", 60, lambda: judge.states())
-        until(lambda: NEW in json.dumps(page(server, "devices")), 60, "the new one is found")
+        # meanwhile its target may be down, and there is no list
+        until(lambda: NEW in str(ask(server, "api/devices", "GET", None)[1]), 60, "the new one is found")
         config = page(server, "config")
         done = page(server, "config/draft", method="POST", text=config["text"], do="replace", old=ROOM, new=NEW)
         saved = page(server, "config/save", method="POST", text=done["text"], base=config["tag"])
@@ -340,6 +347,13 @@ def test_what_dies_is_started_again_and_nothing_else(scene):
     for do, state in (("hold", "T"), ("go", "S")):
         assert house.inside("owsd-addon", do).returncode == 0
         until(lambda s=state: owsdtest.state_of(recorder) == s, 20, do)
+    # also while there is none: nothing else is started, or stopped
+    os.kill(recorder, signal.SIGKILL)
+    until(lambda: "owsd-recorder has ended" in house.addon.log(), 20, house.addon.log)
+    assert [house.inside("owsd-addon", do).returncode for do in ("hold", "go", "sto")] == [0, 0, 2]
+    until(lambda: house.pid("owsd-recorder") not in (0, recorder), 30, house.addon.log)
+    # nor does one that is held keep the add-on from its end
+    assert house.inside("owsd-addon", "hold").returncode == 0
     # nor is a file lost that nobody understands
     house.file.write_text("OwsDrv {\n  Timeout never\n}\n")
     assert house.addon.stop(60) == 0
@@ -348,6 +362,25 @@ def test_what_dies_is_started_again_and_nothing_else(scene):
     house.file.write_text(FILES.joinpath("OWS.rio").read_text())
     found(house)
     house.shows("temperature1", "21.5")
+    # and once it is understood, it gets what each start gives it
+    until(lambda: 'Proxy "172.30.32.2"' in " ".join(house.file.read_text().split()), 30, house.file.read_text)
+    until(lambda: house.pid("owsd-web"), 30, house.addon.log)
+
+
+def test_what_a_program_plants_in_its_folders_gives_it_nothing(scene):
+    """Root starts all of them, and meets what the user owsd, or a guest of Samba, has left."""
+    house = House(scene, broker=False)
+    found(house)
+    assert house.addon.stop(60) == 0
+    house.file.unlink()
+    house.file.symlink_to("/usr/share/owsd/addon.rio")
+    state = scene.path / "data/owsd-notify/OWS"
+    shutil.rmtree(state)
+    state.symlink_to("/usr/local/sbin")
+    house.start()
+    until(lambda: house.pid("owsd"), 30, house.addon.log)
+    owners = house.inside("stat", "-c", "%U %a", "/usr/share/owsd/addon.rio", "/usr/local/sbin").stdout
+    assert owners == "root 644\nroot 755\n", owners
 
 
 def test_a_broker_that_comes_later_is_taken_and_one_of_ones_own_stays(scene):
@@ -361,10 +394,13 @@ def test_a_broker_that_comes_later_is_taken_and_one_of_ones_own_stays(scene):
     own = house.file.read_text()
     own = re.sub(r'( Broker +)".*"', r'\1"mqtt://localhost:9"', own)
     own = re.sub(r"\n *(User|PasswordFile) .*", "", own)
+    own = re.sub(r"\n +(Broker )", r" \1", own)  # as a person may have written it
+    assert re.search(r"\S +Broker ", own), own
     house.file.write_text(own)
     house.start()
     house.shows("temperature1", "21.5")
     assert '"mqtt://localhost:9"' in house.file.read_text()
+    assert not house.supervisor.wrong, house.supervisor.wrong
 
 
 def test_make_addon_makes_a_repository_of_the_packages_that_are_there(scene):
