@@ -6,6 +6,7 @@ small, and run as a container is: as its user, in namespaces of its own, with a 
 Each architecture that build/deb has packages of is looked at; those of another machine run in qemu-user.
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -75,8 +76,11 @@ mount -o remount,ro,bind $0 && exec chroot --userspec=4304:4304 $0 "$@"
 
 
 def contained(root, *command):
-    """A command as the first process of a container with that root, without a right."""
-    return ["unshare", "-m", "-p", "-f", "--kill-child", "setsid", "sh", "-ec", INSIDE, root, *command]
+    """A command as the first process of a container with that root, without a right. It has a session of
+    its own and another user, who is asked for no end with its parent: so it lives in the processes of
+    another, which end with that one."""
+    ends = ["unshare", "-p", "-f", "--kill-child"]
+    return [*ends, *ends, "-m", "setsid", "sh", "-ec", INSIDE, root, *command]
 
 
 def test_the_same_packages_give_the_same_bytes(scene):
@@ -145,7 +149,7 @@ class Container:
                 of.setdefault(int(rest.split()[1]), []).append((int(entry.name), name))
             except OSError:
                 continue
-        found, left = [], of.get(self.program.pid, [])
+        found, left = [], [child for pid, _ in of.get(self.program.pid, []) for child in of.get(pid, [])]
         while left:
             found += left
             left = [child for pid, _ in left for child in of.get(pid, [])]
@@ -205,6 +209,21 @@ def test_the_faces_that_are_asked_for_run_beside_owsd_and_one_that_dies_comes_ba
     os.kill(container.processes()[0][0], 15)
     assert container.program.process.wait(60) == 0, container.program.log()
     assert not container.processes()
+
+
+def test_a_test_that_is_cut_off_leaves_no_process(scene):
+    container = Container(scene, "recorder", house(server(scene).port))
+    until(lambda: "owsd-recorder" in container.names(), 60, container.program.log)
+    living = [pid for pid, _ in container.processes()]
+    container.program.kill()
+
+    def left():
+        found = []
+        for pid in living:
+            with contextlib.suppress(OSError):
+                found.append(pathlib.Path(f"/proc/{pid}/cmdline").read_text())
+        return [words for words in found if words]
+    until(lambda: not left(), 20, lambda: str(left()))
 
 
 def test_a_face_that_is_none_is_refused_with_those_that_there_are(scene):
