@@ -7,7 +7,7 @@
  * that takes longer, the reset (1.1 ms), is followed by one that takes nothing. A quicker line
  * would need an answer before each byte, which costs more than it gains: a USB adapter holds
  * answers back for a millisecond and more. Each byte of data comes back as the wire had it, so
- * whatever is lost or added on the way shows. A search is two round trips for each device, by the
+ * whatever is lost or added on the way shows. A search is one round trip for each device, by the
  * accelerator. Before a strong pull-up the chip is asked whether it still has its settings.
  */
 #include <errno.h>
@@ -195,27 +195,30 @@ static int run_piece(struct serial_master *master, bool reset, const uint8_t *ou
                      uint8_t *in, size_t in_n)
 {
 	struct stream stream = {.out_n = 0};
-	size_t at;
 
 	if (reset)
 		put_command(master, &stream, RESET, true);
-	at = stream.in_n;
 	for (size_t i = 0; i < out_n + in_n; i++)
 		put_data(master, &stream, i < out_n ? out[i] : 0xFF);
-	if (!reset)
-		at = stream.in_n - out_n - in_n;
 	int err = send(master, &stream);
+	const uint8_t *back = stream.in + stream.in_n - out_n - in_n;
 
 	if (!err && reset)
-		err = judge_reset(master, stream.in[at - 1]);
+		err = judge_reset(master, back[-1]);
 	if (err)
 		return err;
 	master->cost.wire_ns += (out_n + in_n) * 8 * SLOT_NS;
-	if (out_n && memcmp(stream.in + at, out, out_n) != 0)
+	if (out_n && memcmp(back, out, out_n) != 0)
 		return lose(master, -EIO);
 	if (in_n)
-		memcpy(in, stream.in + at + out_n, in_n);
+		memcpy(in, back + out_n, in_n);
 	return 0;
+}
+
+/* After an error what went before is not known. */
+static int prepare(struct serial_master *master, bool reset)
+{
+	return !master->lost ? 0 : reset ? resync(master) : -EIO;
 }
 
 static int ds2480b_run(struct link *base, const struct link_part *part)
@@ -224,10 +227,7 @@ static int ds2480b_run(struct link *base, const struct link_part *part)
 	size_t strong = part->after == LINK_STRONG && part->out_n;
 	size_t out_n = part->out_n - strong, out_at = 0, in_at = 0;
 	bool reset = part->reset;
-
-	if (master->lost && !reset)
-		return -EIO; /* what went before is not known */
-	int err = master->lost ? resync(master) : 0;
+	int err = prepare(master, reset);
 
 	if (!err && !reset && !out_n && !part->in_n && !strong)
 		return 0;
@@ -257,15 +257,19 @@ static int ds2480b_slot(struct link *base, bool out, enum link_after after)
 }
 
 /* Two bits for each of an id: the direction or what was taken, and below it the conflict. */
-static int ds2480b_path(struct link *base, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
+static int ds2480b_path(struct link *base, bool reset, uint8_t command, uint8_t rom[8],
+                        uint8_t conflict[8])
 {
 	struct serial_master *master = serial_of(base);
 	struct stream stream = {.out_n = 0};
 	uint8_t answer[16];
 	bool nobody = true;
+	int err = prepare(master, reset);
 
-	if (master->lost)
-		return -EIO;
+	if (err)
+		return err;
+	if (reset)
+		put_command(master, &stream, RESET, true);
 	put_data(master, &stream, command);
 	put_command(master, &stream, SEARCH_ON, false);
 	for (unsigned i = 0; i < 16; i++) {
@@ -276,14 +280,17 @@ static int ds2480b_path(struct link *base, uint8_t command, uint8_t rom[8], uint
 		put_data(master, &stream, byte);
 	}
 	put_command(master, &stream, SEARCH_OFF, false);
-	int err = send(master, &stream);
+	err = send(master, &stream);
+	const uint8_t *back = stream.in + stream.in_n - sizeof(answer) - 1;
 
+	if (!err && reset)
+		err = judge_reset(master, back[-1]);
 	if (err)
 		return err;
 	master->cost.wire_ns += UINT64_C(200) * SLOT_NS;
-	if (stream.in[stream.in_n - 17] != command)
+	if (back[0] != command)
 		return lose(master, -EIO);
-	memcpy(answer, stream.in + stream.in_n - 16, 16);
+	memcpy(answer, back + 1, sizeof(answer));
 	memset(rom, 0, 8);
 	memset(conflict, 0, 8);
 	for (unsigned i = 0; i < 64; i++) {

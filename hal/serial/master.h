@@ -7,6 +7,7 @@
 #pragma once
 
 #include "hal/base/rivals.h"
+#include "hal/serial/known.h"
 #include "hal/serial/port.h"
 #include "hal/wire/link.h"
 
@@ -36,7 +37,10 @@ struct serial_master {
 
 	/* The DS2480B. */
 	bool data_mode, strong, lost; /* lost: what the adapter does now is not known */
-	unsigned baud;                /* passive: the speed that is set */
+
+	/* Passive. */
+	unsigned baud; /* the speed that is set */
+	struct known_ids known;
 };
 
 static inline struct serial_master *serial_of(struct link *link)

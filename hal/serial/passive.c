@@ -4,7 +4,8 @@
  * the wire, so each byte that is sent is a pulse on the wire, and comes back as the wire had it
  * (Maxim application note 214). At 9600 baud F0 is a reset; at 115200 FF is a slot that writes 1 or
  * reads, and 00 one that writes 0. What comes back shows the pulse itself, or the port has another
- * speed, or there is no adapter. A search is a round trip for each bit.
+ * speed, or there is no adapter. A search is a round trip for each bit, whose direction depends on
+ * what was read; where it will lead to a known id all goes out at once, and the echo shows it.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -12,6 +13,7 @@
 
 #include "hal/base/time.h"
 #include "hal/serial/passive.h"
+#include "hal/wire/search.h"
 
 #define RESET_BAUD 9600
 #define SLOT_BAUD 115200
@@ -19,17 +21,16 @@
 #define SLOT_NS 86806
 enum { RESET = 0xF0, ONE = 0xFF, ZERO = 0x00 };
 
-#define PIECE 16 /* bytes of data at once: a byte of the line for each of their bits */
+#define PIECE 32 /* bytes of data at once: a byte of the line for each of their bits */
 
 static int set_speed(struct serial_master *master, unsigned baud)
 {
-	int err;
-
 	if (!master->port)
 		return -ENODEV;
 	if (master->baud == baud)
 		return 0;
-	err = master->port->ops->speed(master->port, baud);
+	int err = master->port->ops->speed(master->port, baud);
+
 	master->baud = err ? 0 : baud;
 	return err;
 }
@@ -49,6 +50,13 @@ static int pass(struct serial_master *master, unsigned baud, const uint8_t *out,
 	return err == -ENOTTY ? -EIO : err;
 }
 
+/* What came back is not what was written: what the wire did is not known. */
+static int lose(struct serial_master *master)
+{
+	master->lost = true;
+	return -EIO;
+}
+
 /*
  * The first four bits are the pulse itself, which is low whatever answers: with others the speed is
  * wrong, or the byte is not an echo. A slave holds the line low somewhere in the rest.
@@ -65,34 +73,46 @@ static int reset(struct serial_master *master)
 	master->cost.wire_ns += RESET_NS;
 	if (in == 0)
 		return -ECOMM;
-	if (in & 0x0F) {
-		master->lost = true;
-		return -EIO;
-	}
+	if (in & 0x0F)
+		return lose(master);
 	return in == RESET ? -EHOSTDOWN : 0;
 }
 
-/* Write and read slots: -EIO where a 0 did not come back as one, or a written 1 did not. */
-static int run_piece(struct serial_master *master, const uint8_t *out, uint8_t *in, size_t n)
+/* With a reset, or a transaction goes on: after an error nothing is known of it. */
+static int begin(struct serial_master *master, bool anew)
+{
+	return anew ? reset(master) : master->lost ? -EIO : 0;
+}
+
+static int slots(struct serial_master *master, const uint8_t *line, uint8_t *back, size_t n)
+{
+	int err = pass(master, SLOT_BAUD, line, back, n);
+
+	if (!err)
+		master->cost.wire_ns += n * SLOT_NS;
+	return err;
+}
+
+/* Up to PIECE bytes. */
+static int run_piece(struct serial_master *master, const uint8_t *out, size_t out_n, uint8_t *in,
+                     size_t in_n)
 {
 	uint8_t line[8 * PIECE], back[8 * PIECE];
+	size_t n = 8 * (out_n + in_n);
 
-	for (size_t i = 0; i < 8 * n; i++)
-		line[i] = !out || (out[i / 8] >> i % 8 & 1) ? ONE : ZERO;
-	int err = pass(master, SLOT_BAUD, line, back, 8 * n);
+	for (size_t i = 0; i < n; i++)
+		line[i] = i / 8 >= out_n || (out[i / 8] >> i % 8 & 1) ? ONE : ZERO;
+	int err = slots(master, line, back, n);
 
 	if (err)
 		return err;
-	master->cost.wire_ns += 8 * n * SLOT_NS;
-	if (in)
-		memset(in, 0, n);
-	for (size_t i = 0; i < 8 * n; i++) {
-		if (out && (back[i] & 1) != (line[i] & 1)) {
-			master->lost = true;
-			return -EIO;
-		}
-		if (in)
-			in[i / 8] |= (uint8_t)((back[i] & 1) << i % 8);
+	if (in_n)
+		memset(in, 0, in_n);
+	for (size_t i = 0; i < n; i++) {
+		if (i / 8 >= out_n)
+			in[i / 8 - out_n] |= (uint8_t)((back[i] & 1) << i % 8);
+		else if ((back[i] ^ line[i]) & 1)
+			return lose(master);
 	}
 	return 0;
 }
@@ -100,21 +120,22 @@ static int run_piece(struct serial_master *master, const uint8_t *out, uint8_t *
 static int passive_run(struct link *base, const struct link_part *part)
 {
 	struct serial_master *master = serial_of(base);
-	int err = 0;
+	size_t out_at = 0, in_at = 0;
 
 	if (part->after == LINK_STRONG)
 		return -EOPNOTSUPP;
-	if (master->lost && !part->reset)
-		return -EIO; /* what went before is not known */
-	if (part->reset)
-		err = reset(master);
-	for (size_t at = 0, n; !err && at < part->out_n; at += n) {
-		n = part->out_n - at < PIECE ? part->out_n - at : PIECE;
-		err = run_piece(master, part->out + at, NULL, n);
-	}
-	for (size_t at = 0, n; !err && at < part->in_n; at += n) {
-		n = part->in_n - at < PIECE ? part->in_n - at : PIECE;
-		err = run_piece(master, NULL, part->in + at, n);
+	int err = begin(master, part->reset);
+
+	while (!err && (out_at < part->out_n || in_at < part->in_n)) {
+		size_t out = part->out_n - out_at, in = part->in_n - in_at;
+
+		if (out > PIECE)
+			out = PIECE;
+		if (in > PIECE - out)
+			in = PIECE - out;
+		err = run_piece(master, part->out + out_at, out, part->in + in_at, in);
+		out_at += out;
+		in_at += in;
 	}
 	return err;
 }
@@ -126,61 +147,108 @@ static int passive_slot(struct link *base, bool out, enum link_after after)
 
 	if (after == LINK_STRONG)
 		return -EOPNOTSUPP;
-	if (master->lost)
-		return -EIO;
-	int err = pass(master, SLOT_BAUD, &line, &back, 1);
+	int err = begin(master, false);
 
-	if (err)
-		return err;
-	master->cost.wire_ns += SLOT_NS;
-	return back & 1;
+	if (!err)
+		err = slots(master, &line, &back, 1);
+	return err ? err : back & 1;
 }
 
-static void set_bit(uint8_t bits[8], unsigned i, bool on)
+/* The slots of a search: its command; for each bit of an id it, its complement, the direction. */
+#define COMMAND 8
+#define SLOTS (COMMAND + 3 * 64)
+enum { BIT, COMPLEMENT, DIRECTION };
+
+static unsigned bit_of(const uint8_t bits[8], unsigned i)
 {
-	uint8_t mask = (uint8_t)(1 << i % 8);
-
-	bits[i / 8] = (uint8_t)(on ? bits[i / 8] | mask : bits[i / 8] & ~mask);
+	return bits[i / 8] >> i % 8 & 1;
 }
 
-/* The direction goes out with the two slots of the next bit: one exchange for each bit of an id. */
-static int passive_path(struct link *base, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
+static unsigned what_is(unsigned slot)
+{
+	return slot < COMMAND ? DIRECTION : (slot - COMMAND) % 3;
+}
+
+/*
+ * The slots whose directions are known go out at once, the others bit by bit. The first `sure` bits
+ * of id are; all become those of the device that is found. Returns 0, an error, or how many bits
+ * are right now: the direction that was written after them was not.
+ */
+static int follow(struct serial_master *master, uint8_t command, const uint8_t wanted[8],
+                  unsigned sure, uint8_t id[8], uint8_t conflict[8])
+{
+	unsigned known = COMMAND + 3 * sure + DIRECTION, to;
+	uint8_t line[SLOTS], back[SLOTS];
+
+	memset(conflict, 0, 8);
+	for (unsigned from = 0; from < SLOTS; from = to) {
+		to = from < known ? known : from + 3;
+		if (to > SLOTS)
+			to = SLOTS;
+		for (unsigned i = from, one; i < to; i++) {
+			one = i < COMMAND ? command >> i & 1 : bit_of(id, (i - COMMAND) / 3);
+			line[i] = what_is(i) == DIRECTION && !one ? ZERO : ONE;
+		}
+		int err = slots(master, line + from, back + from, to - from);
+
+		for (unsigned i = from; !err && i < to; i++) {
+			unsigned bit = (i - COMMAND) / 3;
+
+			if (what_is(i) == DIRECTION && ((back[i] ^ line[i]) & 1))
+				err = lose(master);
+			if (what_is(i) != COMPLEMENT)
+				continue;
+			unsigned is = back[i - 1] & 1, both = is == (back[i] & 1);
+			unsigned taken = both ? bit_of(wanted, bit) : is;
+			unsigned wrong = taken ^ bit_of(id, bit);
+
+			if (both && is)
+				return bit ? -EBADMSG : -EHOSTDOWN;
+			conflict[bit / 8] |= (uint8_t)(both << bit % 8);
+			id[bit / 8] ^= (uint8_t)(wrong << bit % 8);
+			if (wrong && i + 1 < to)
+				return (int)bit + 1;
+		}
+		if (err)
+			return err;
+	}
+	return 0;
+}
+
+/* In a search for alarms any of the known ones may be missing. */
+static int passive_path(struct link *base, bool anew, uint8_t command, uint8_t rom[8],
+                        uint8_t conflict[8])
 {
 	struct serial_master *master = serial_of(base);
-	uint8_t line[3] = {ONE, ONE, ONE}, back[3] = {ONE};
-	const struct link_part part = {.out = &command, .out_n = 1};
-	int err = passive_run(base, &part);
+	bool all = command == ONEWIRE_SEARCH;
+	int expected = anew && all ? known_expect(&master->known, rom) : -1;
+	uint8_t id[8] = {0};
+	int err = begin(master, anew);
 
-	for (unsigned i = 0; !err && i <= 64; i++) {
-		unsigned first = i == 0, n = i == 0 ? 2 : i == 64 ? 1 : 3;
-		bool id, complement, taken;
+	if (expected >= 0)
+		memcpy(id, master->known.id[expected], sizeof(id));
+	if (!err)
+		err = follow(master, command, rom, expected >= 0 ? 64 : 0, id, conflict);
+	if (err > 0) {
+		unsigned sure = (unsigned)err;
 
-		err = pass(master, SLOT_BAUD, line + first, back + first, n);
-		if (!err && !line[0] && (back[0] & 1)) {
-			master->lost = true;
-			err = -EIO;
-		}
-		if (err || i == 64)
-			break;
-		id = back[1] & 1;
-		complement = back[2] & 1;
-		if (id && complement)
-			err = i == 0 ? -EHOSTDOWN : -EBADMSG;
-		taken = id == complement ? rom[i / 8] >> i % 8 & 1 : id;
-		set_bit(conflict, i, id == complement);
-		set_bit(rom, i, taken);
-		line[0] = taken ? ONE : ZERO;
+		err = reset(master);
+		if (!err)
+			err = follow(master, command, rom, sure, id, conflict);
 	}
-	master->cost.wire_ns += UINT64_C(192) * SLOT_NS;
-	return err;
+	if (err)
+		return err < 0 ? err : -EBADMSG;
+	if (all)
+		known_found(&master->known, expected, id);
+	memcpy(rom, id, sizeof(id));
+	return 0;
 }
 
 static int passive_begin(struct serial_master *master, char *why, size_t why_size)
 {
-	int err;
-
 	master->lost = true;
-	err = reset(master);
+	int err = reset(master);
+
 	if (!err || err == -EHOSTDOWN || err == -ECOMM)
 		err = set_speed(master, SLOT_BAUD);
 	if (err == -ETIMEDOUT) {

@@ -89,17 +89,18 @@ static int told_triplet(struct link *link, bool direction)
 	return answer(link, 7, bits >= 0 && (bits & 3) == 3 ? 7 : bits, NULL, 0);
 }
 
-static int told_path(struct link *link, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
+static int told_path(struct link *link, bool reset, uint8_t command, uint8_t rom[8],
+                     uint8_t conflict[8])
 {
 	struct trace *trace = TOLD(link)->trace;
 	uint8_t both[16] = {0};
 	int err;
 
-	ASK(link, "path %02X", command);
+	ASK(link, "path %c %02X", reset ? 'r' : '-', command);
 	memcpy(trace->directions, rom, 8);
 	trace->direction_n = 8;
 	memcpy(both, rom, 8);
-	err = UNDER(link, ops, path, command, both, both + 8);
+	err = UNDER(link, ops, path, reset, command, both, both + 8);
 	err = answer(link, 0, err, both, sizeof(both));
 	memcpy(rom, both, 8);
 	memcpy(conflict, both + 8, 8);

@@ -206,7 +206,7 @@ bool trace_cut(char *text, struct trace_line *line)
 /* Does the question go on with a transaction? Then what was before it counts. */
 static bool goes_on(const char *question)
 {
-	static const char *const words[] = {"run - ", "slot ", "triplet", "path "};
+	static const char *const words[] = {"run - ", "slot ", "triplet", "path - "};
 
 	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++)
 		if (strncmp(question, words[i], strlen(words[i])) == 0)

@@ -399,14 +399,17 @@ static int ds2490_slot(struct link *base, bool out, enum link_after after)
  * says where it has left some behind, which has a 0 in the id. Where the id has the 1 that it was
  * asked for, they may differ or not.
  */
-static int ds2490_path(struct link *base, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
+static int ds2490_path(struct link *base, bool reset, uint8_t command, uint8_t rom[8],
+                       uint8_t conflict[8])
 {
 	const struct goal goal = {.wire_ns = 200 * SLOT_NS};
 	struct ds2490 *chip = chip_of(base);
 	struct ds2490_state state;
 	uint8_t bytes[16] = {0};
-	int err = prepare(chip, false);
+	int err = prepare(chip, reset);
 
+	if (!err && reset)
+		err = reset_wire(chip);
 	if (err)
 		return err;
 	err = transfer(chip, USB_OUT, rom, 8);

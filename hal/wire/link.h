@@ -127,12 +127,13 @@ struct link_ops {
 	 */
 	int (*triplet)(struct link *link, bool direction);
 	/*
-	 * The command of a search, after a reset, and all 64 triplets: the directions, a bit each,
-	 * become the id that was taken; conflict has the bits where devices differ. 0; -EHOSTDOWN:
-	 * nobody is in this search; -EBADMSG: devices left in the middle; or an error. NULL: made
-	 * of run() and triplet().
+	 * A reset, unless the wire had it, the command of a search, and all 64 triplets: the
+	 * directions, a bit each, become the id that was taken; conflict has the bits where devices
+	 * differ. 0; -EHOSTDOWN: nobody is in this search; -EBADMSG: devices left in the middle; or
+	 * an error. NULL: made of run() and triplet().
 	 */
-	int (*path)(struct link *link, uint8_t command, uint8_t rom[8], uint8_t conflict[8]);
+	int (*path)(struct link *link, bool reset, uint8_t command, uint8_t rom[8],
+	            uint8_t conflict[8]);
 	/*
 	 * n transactions at the same time, LINK_MANY at most, on links with this function, each of
 	 * another chip. None waits for another beyond what it takes of the way to the chips. An

@@ -33,16 +33,6 @@ static int triplet(struct link *link, bool direction)
 	return err < 0 ? err : id | complement << 1 | taken << 2;
 }
 
-/* The command too, unless it goes out with the path. */
-static int begin_search(struct link *link, uint8_t command)
-{
-	const struct link_part part = {
-		.reset = true, .out = &command, .out_n = link->ops->path ? 0 : 1};
-	int err = link->ops->run(link, &part);
-
-	return err == -EHOSTDOWN ? 0 : err ? err : 1;
-}
-
 static bool rom_bit(const uint8_t rom[8], unsigned position)
 {
 	return rom[(position - 1) / 8] >> (position - 1) % 8 & 1;
@@ -70,14 +60,23 @@ struct pass {
 	uint8_t rom[8], conflict[8];
 };
 
-/* rom: the directions. As link_ops.path. */
-static int make_pass(struct link *link, uint8_t command, const uint8_t rom[8], struct pass *pass)
+/*
+ * Reset, command, and where the link has a path, all that follows; a link that stands in front of
+ * another makes its own reset. rom: the directions. 1, 0 nobody answers, or an error.
+ */
+static int begin_pass(struct link *link, uint8_t command, const uint8_t rom[8], struct pass *pass)
 {
-	pass->made = link->ops->path;
-	if (!pass->made)
-		return 0;
-	memcpy(pass->rom, rom, sizeof(pass->rom));
-	return link->ops->path(link_wire(link), command, pass->rom, pass->conflict);
+	const struct link_part part = {
+		.reset = true, .out = &command, .out_n = link->ops->path ? 0 : 1};
+	bool resets = link->ops->path && !link->wire;
+	int err = resets ? 0 : link->ops->run(link, &part);
+
+	pass->made = !err && link->ops->path;
+	if (pass->made) {
+		memcpy(pass->rom, rom, sizeof(pass->rom));
+		err = link->ops->path(link_wire(link), resets, command, pass->rom, pass->conflict);
+	}
+	return err == -EHOSTDOWN ? 0 : err ? err : 1;
 }
 
 static int next_bits(struct link *link, const struct pass *pass, unsigned position, bool direction)
@@ -97,18 +96,11 @@ int search_next(struct search *search, struct link *link)
 
 	if (search->last)
 		return 0;
-	int present = begin_search(link, search->command);
-	if (present > 0) {
-		for (unsigned position = 1; position <= 64; position++)
-			set_rom_bit(directions, position, direction_at(search, position));
-		int err = make_pass(link, search->command, directions, &pass);
-
-		if (err && err != -EHOSTDOWN)
-			return err;
-		present = !err;
-	}
+	for (unsigned position = 1; position <= 64; position++)
+		set_rom_bit(directions, position, direction_at(search, position));
+	int present = begin_pass(link, search->command, directions, &pass);
 	if (present <= 0) {
-		search->last = true;
+		search->last = !present || !pass.made;
 		return present;
 	}
 	for (unsigned position = 1; position <= 64; position++) {
@@ -179,16 +171,11 @@ static void exclude(const uint8_t *const roms[], bool away[], unsigned n, unsign
 static int follow(struct link *link, uint8_t command, const uint8_t *const roms[], bool away[],
                   unsigned n, unsigned length)
 {
-	int present = begin_search(link, command);
 	struct pass pass;
+	int present = begin_pass(link, command, roms[0], &pass);
 
-	if (present > 0) {
-		int err = make_pass(link, command, roms[0], &pass);
-
-		present = err == -EHOSTDOWN ? 0 : err ? err : 1;
-		if (pass.made)
-			length = 64;
-	}
+	if (pass.made)
+		length = 64;
 	if (present == 0)
 		for (unsigned i = 0; i < n; i++)
 			away[i] = true;

@@ -163,8 +163,12 @@ static unsigned found_by(bool alarm, uint8_t family)
 
 static void test_the_accelerator_finds_all_devices_of_a_family_of_an_alarm_or_none(void)
 {
+	unsigned writes;
+
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	writes = serial.writes;
 	TEST_ASSERT_EQUAL_UINT(4, found_by(false, 0));
+	TEST_ASSERT_EQUAL_UINT(writes + 4, serial.writes); /* one for each */
 	TEST_ASSERT_EQUAL_UINT(2, found_by(false, 0x28));
 	TEST_ASSERT_EQUAL_UINT(1, found_by(false, 0x3A));
 	TEST_ASSERT_EQUAL_UINT(0, found_by(false, 0x29));
@@ -202,8 +206,8 @@ static void test_a_path_that_breaks_off_turns_the_accelerator_off_and_is_an_erro
 
 		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&serial.net, &pull));
 	}
-	TEST_ASSERT_EQUAL_INT(-EBADMSG,
-	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, serial.wire->ops->path(serial.wire, false, ONEWIRE_SEARCH,
+	                                                       rom, conflict));
 	TEST_ASSERT_FALSE(serial.sim.search);
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
 }
@@ -297,8 +301,8 @@ static void test_after_an_error_nothing_goes_on_without_a_reset(void)
 	sent = serial.sim.bytes;
 	TEST_ASSERT_EQUAL_INT(-EIO, part_read(serial.wire, &byte, 1));
 	TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(-EIO,
-	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(
+		-EIO, serial.wire->ops->path(serial.wire, false, ONEWIRE_SEARCH, rom, conflict));
 	TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
 	serial_check("t");
 }

@@ -33,7 +33,7 @@ static void test_a_reading_is_a_reset_and_slots(void)
 	unsigned reads = serial.reads;
 
 	serial_check("t");
-	TEST_ASSERT_EQUAL_UINT(reads + 3, serial.reads);
+	TEST_ASSERT_EQUAL_UINT(reads + 2, serial.reads);
 	serial.wire->ops->cost(serial.wire, &after);
 	TEST_ASSERT_EQUAL_UINT64(1, after.resets - before.resets);
 	TEST_ASSERT_EQUAL_UINT64(1041667 + 19 * 8 * 86806, after.wire_ns - before.wire_ns);
@@ -51,24 +51,94 @@ static void test_a_short_and_nobody_are_told_apart(void)
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
 }
 
-static void test_a_search_is_one_exchange_for_each_bit(void)
+/* All of the wire: how many devices, and how often something was written. */
+static unsigned round_of(bool alarm, unsigned *writes)
 {
+	unsigned begun = serial.writes, count = 0;
 	struct search search;
+	int found;
+
+	search_begin(&search, alarm, 0);
+	while ((found = search_next(&search, serial.wire)) > 0)
+		count++;
+	TEST_ASSERT_EQUAL_INT(0, found);
+	*writes = serial.writes - begun;
+	return count;
+}
+
+static void test_a_search_is_one_exchange_for_each_bit_and_one_in_all_for_a_known_id(void)
+{
 	unsigned writes;
 
 	serial_start(SIM_PASSIVE, &serial_passive, house);
-	search_begin(&search, false, 0);
-	writes = serial.writes;
-	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
-	TEST_ASSERT_EQUAL_UINT(writes + 2 + 65, serial.writes);
-	TEST_ASSERT_EQUAL_INT(1, search_next(&search, serial.wire));
-	TEST_ASSERT_EQUAL_INT(0, search_next(&search, serial.wire));
-	search_begin(&search, true, 0);
-	TEST_ASSERT_EQUAL_INT(0, search_next(&search, serial.wire));
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2 * (2 + 64), writes);
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2 * 2, writes);
+	TEST_ASSERT_EQUAL_UINT(0, round_of(true, &writes));
+	TEST_ASSERT_EQUAL_UINT(2, writes);
 	TEST_ASSERT_EQUAL_INT(
 		1, search_verify(serial.wire, sim_net_slave(&serial.net, "t")->rom, false));
 	TEST_ASSERT_EQUAL_INT(
 		0, search_verify(serial.wire, sim_net_slave(&serial.net, "t")->rom, true));
+}
+
+/* What came and what went is seen at once, and is known after a search or two. */
+static void test_a_search_that_leads_elsewhere_than_it_did_goes_on_bit_by_bit(void)
+{
+	static const uint8_t absent[8] = {0x28, 1, 2, 3, 4, 5, 6, 0x7b};
+	unsigned writes;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	serial_event("unplug t");
+	TEST_ASSERT_EQUAL_UINT(1, round_of(false, &writes));
+	serial_event("plug t");
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	/* the two part in the second bit */
+	TEST_ASSERT_EQUAL_UINT(2 + 2 + 62 + 2 + 64, writes);
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2 * 2, writes);
+	serial_event("unplug t");
+	TEST_ASSERT_EQUAL_UINT(1, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2 + 2 + 62, writes);
+	TEST_ASSERT_EQUAL_UINT(1, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2, writes);
+	TEST_ASSERT_EQUAL_INT(
+		0, search_verify(serial.wire, sim_net_slave(&serial.net, "t")->rom, false));
+	serial_event("plug t");
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_INT(0, search_verify(serial.wire, absent, false));
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+}
+
+/* Whatever comes back wrong: a true id, none, or an error. */
+static void test_a_wrong_bit_in_a_search_for_a_known_id_makes_no_other_id(void)
+{
+	unsigned writes, good = 0;
+
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	for (unsigned i = 0; i < 200; i++) {
+		struct search search;
+
+		serial.sim.answered = 8 * 400 - 2 - i;
+		serial.sim.noise_each = 400;
+		search_begin(&search, false, 0);
+		int found = search_next(&search, serial.wire);
+
+		serial.sim.noise_each = 0;
+		good += found == 1;
+		if (found == 1)
+			TEST_ASSERT_EQUAL_HEX8_ARRAY(sim_net_slave(&serial.net, "t")->rom,
+			                             search.rom, 8);
+		else
+			TEST_ASSERT_LESS_OR_EQUAL_INT(0, found);
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(0, good);
+	TEST_ASSERT_LESS_THAN_UINT(200, good);
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2, round_of(false, &writes));
+	TEST_ASSERT_EQUAL_UINT(2 * 2, writes);
 }
 
 static void test_there_is_no_strong_pull_up(void)
@@ -135,15 +205,15 @@ static void test_a_pulse_and_a_direction_that_do_not_come_back_are_errors(void)
 		sent = serial.sim.bytes;
 		TEST_ASSERT_EQUAL_INT(-EIO, part_read(serial.wire, &byte, 1));
 		TEST_ASSERT_EQUAL_INT(-EIO, link_slot(serial.wire, true, LINK_IDLE));
-		TEST_ASSERT_EQUAL_INT(
-			-EIO, serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
+		TEST_ASSERT_EQUAL_INT(-EIO, serial.wire->ops->path(serial.wire, false,
+		                                                   ONEWIRE_SEARCH, rom, conflict));
 		TEST_ASSERT_EQUAL_UINT64(sent, serial.sim.bytes);
 	}
 	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
 	serial.sim.answered = 8 * 200 - 11; /* bit 0 of the third answer after the command */
 	serial.sim.noise_each = 200;
-	TEST_ASSERT_EQUAL_INT(-EIO,
-	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(
+		-EIO, serial.wire->ops->path(serial.wire, false, ONEWIRE_SEARCH, rom, conflict));
 	serial.sim.noise_each = 0;
 	serial_check("t");
 }
@@ -154,8 +224,8 @@ static void test_a_path_leads_where_it_is_told_and_ends_where_nobody_answers(voi
 
 	serial_start(SIM_PASSIVE, &serial_passive, house);
 	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
-	TEST_ASSERT_EQUAL_INT(0,
-	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(
+		0, serial.wire->ops->path(serial.wire, false, ONEWIRE_SEARCH, rom, conflict));
 	TEST_ASSERT_EQUAL_HEX8(0x3A, rom[0]);
 	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
 	for (unsigned i = 0; i < 2; i++) {
@@ -165,8 +235,8 @@ static void test_a_path_leads_where_it_is_told_and_ends_where_nobody_answers(voi
 
 		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&serial.net, &pull));
 	}
-	TEST_ASSERT_EQUAL_INT(-EBADMSG,
-	                      serial.wire->ops->path(serial.wire, ONEWIRE_SEARCH, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, serial.wire->ops->path(serial.wire, false, ONEWIRE_SEARCH,
+	                                                       rom, conflict));
 }
 
 /* More than goes at once, there and back. */
@@ -244,7 +314,9 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_reading_is_a_reset_and_slots);
 	RUN_TEST(test_a_short_and_nobody_are_told_apart);
-	RUN_TEST(test_a_search_is_one_exchange_for_each_bit);
+	RUN_TEST(test_a_search_is_one_exchange_for_each_bit_and_one_in_all_for_a_known_id);
+	RUN_TEST(test_a_search_that_leads_elsewhere_than_it_did_goes_on_bit_by_bit);
+	RUN_TEST(test_a_wrong_bit_in_a_search_for_a_known_id_makes_no_other_id);
 	RUN_TEST(test_there_is_no_strong_pull_up);
 	RUN_TEST(test_what_is_there_in_place_of_a_passive_adapter_is_named);
 	RUN_TEST(test_a_byte_that_does_not_come_back_as_it_was_written_is_an_error);

@@ -53,9 +53,9 @@ static int triplet(struct link *link, bool direction)
 	return direction << 2;
 }
 
-static int path(struct link *link, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
+static int path(struct link *link, bool reset, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
 {
-	(void)link;
+	(void)link, (void)reset;
 	calls++;
 	if (command != 0xf0)
 		return -EHOSTDOWN;
@@ -185,13 +185,13 @@ static void call_all(struct link *link, char *said)
 	said += sprintf(said, "slot %d %d ", link->ops->slot(link, true, LINK_STRONG),
 	                link->ops->slot(link, false, LINK_IDLE));
 	said += sprintf(said, "triplet %d ", link->ops->triplet(link, true));
-	said += sprintf(said, "path %d", link->ops->path(link, 0xf0, rom, conflict));
+	said += sprintf(said, "path %d", link->ops->path(link, true, 0xf0, rom, conflict));
 	said += sprintf(said, " %02X%02X ", rom[1], conflict[1]);
 	memset(rom, 0, 8);
 	rom[1] = 8;
-	said += sprintf(said, "other %d", link->ops->path(link, 0xf0, rom, conflict));
+	said += sprintf(said, "other %d", link->ops->path(link, false, 0xf0, rom, conflict));
 	said += sprintf(said, " %02X ", rom[1]);
-	said += sprintf(said, "none %d ", link->ops->path(link, 0xec, rom, conflict));
+	said += sprintf(said, "none %d ", link->ops->path(link, true, 0xec, rom, conflict));
 	int err = link->ops->search(link, false, 0, note_found, roms);
 	said += sprintf(said, "search %d %s", err, roms);
 	roms[0] = '\0';

@@ -187,8 +187,8 @@ static void test_devices_that_leave_in_the_middle_of_a_search_are_an_error(void)
 
 		TEST_ASSERT_EQUAL_INT(0, sim_net_add_event(&sticks.stick[0].net, &pull));
 	}
-	TEST_ASSERT_EQUAL_INT(-EBADMSG,
-	                      sticks.wire->ops->path(sticks.wire, ONEWIRE_SEARCH, rom, conflict));
+	TEST_ASSERT_EQUAL_INT(-EBADMSG, sticks.wire->ops->path(sticks.wire, false, ONEWIRE_SEARCH,
+	                                                       rom, conflict));
 	TEST_ASSERT_EQUAL_INT(0, part_reset(sticks.wire));
 }
 
