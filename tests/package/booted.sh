@@ -98,6 +98,18 @@ reloads() {
 	for s in $services; do does "$s takes the first file" timeout 40 systemctl reload "$s"; done
 	same 'the same processes run' "$before" "$(pids "$services")"
 }
+# pages: what they say to the service manager and of groups can be done as it stands there
+pages() {
+	groupadd -f i2c
+	for user in pi plc anna; do useradd -m "$user"; done
+	export USER=pi
+	while read -r page command; do
+		systemctl reset-failed
+		systemctl start owsd@OWS
+		does "$page: $command" sh -c "timeout 40 $command"
+	done <page-commands
+	systemctl restart owsd
+}
 enable_units() {
 	# shellcheck disable=SC2046 # units are words
 	systemctl enable --now $(units "$1")
@@ -185,6 +197,8 @@ RIO
 	systemctl stop owsd-mqtt@THIRD.service
 	systemctl enable --now owsd-influx@HOUSE.service
 	takes 'all upgraded' $packages
+	pages
+	takes 'as the pages say' $packages
 	touch rebooted
 	systemctl reboot
 	exit 0
