@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The attribute files of the kernel, and the meaning of the errors of open, read and write. */
+#ifndef _LARGEFILE64_SOURCE
+#define _LARGEFILE64_SOURCE /* getdents64() of musl */
+#endif
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -124,7 +127,7 @@ int w1_slaves(struct w1_tree *tree, const char *directory)
 	int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 	if (fd < 0)
 		return meaning(tree, directory, "", errno);
-	while ((n = getdents64(fd, buffer, sizeof(tree->text))) > 0) {
+	while ((n = getdents64(fd, (void *)buffer, sizeof(tree->text))) > 0) {
 		for (ssize_t at = 0; at < n;) {
 			const struct dirent64 *entry = (const void *)(buffer + at);
 

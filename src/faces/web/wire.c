@@ -45,7 +45,12 @@ static struct wire *wire_of(int fd)
 ssize_t wire_recv(int fd, void *to, size_t room, int flags) __asm__("recv");
 ssize_t wire_send(int fd, const void *from, size_t len, int flags) __asm__("send");
 ssize_t wire_sendmsg(int fd, const struct msghdr *message, int flags) __asm__("sendmsg");
-ssize_t wire_sendfile(int fd, int file, off64_t *offset, size_t len) __asm__("sendfile64");
+#ifdef __GLIBC__
+#define SENDFILE "sendfile64"
+#else
+#define SENDFILE "sendfile"
+#endif
+ssize_t wire_sendfile(int fd, int file, off_t *offset, size_t len) __asm__(SENDFILE);
 
 /* The result of a call: an error that ends the connection when its peer has made it too slow. */
 static ssize_t wire_result(struct wire *wire, const struct budget_call *call, ssize_t n)
@@ -105,7 +110,7 @@ ssize_t wire_sendmsg(int fd, const struct msghdr *message, int flags)
 #define SYS_sendfile64 SYS_sendfile /* where all offsets have 64 bits */
 #endif
 
-ssize_t wire_sendfile(int fd, int file, off64_t *offset, size_t len)
+ssize_t wire_sendfile(int fd, int file, off_t *offset, size_t len)
 {
 	struct wire *wire = wire_of(fd);
 	struct budget_call call;
