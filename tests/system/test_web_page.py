@@ -190,7 +190,8 @@ def test_what_happened_is_searched_by_words_kinds_and_hours(scene):
         scene.owsctl(daemon, "set", "pump", "1")
         view(page, "alarms")
         shows(page, "#alarms table", "boiler", "pump", "set on")
-        page.press("/")
+        focus = "return document.activeElement.type === 'search'"
+        until(lambda: page.run(focus) or page.press("/"), 20, "keys, which come after the first values")
         page.press(*"pump set")
         page.until("return document.querySelectorAll('#alarms tbody tr').length === 1",
                    lambda: text_of(page, "#alarms table"))
@@ -209,8 +210,7 @@ def test_what_happened_is_searched_by_words_kinds_and_hours(scene):
 def test_keys_choose_views_and_can_be_switched_off(scene):
     with plant(scene) as (_, _, page):
         shown = "return document.querySelector('main > section:not([hidden])').id"
-        page.press("g", "a")
-        page.until(f"{shown} === 'alarms'", "alarms")
+        until(lambda: page.run(f"{shown} === 'alarms'") or page.press("g", "a"), 20, "keys, which come after the first values")
         page.press("?")
         shows(page, "dialog", "Keys", "Trends")
         page.click("#keys-on")
