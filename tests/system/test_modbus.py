@@ -192,7 +192,7 @@ def test_a_genuine_client_reads_what_is_served(scene):
 
 def python_with_pymodbus():
     for python in ("python3", "/usr/bin/python3"):
-        if shutil.which(python) and subprocess.run([python, "-c", "import pymodbus"], check=False,
+        if shutil.which(python) and subprocess.run([python, "-c", "import pymodbus.client"], check=False,
                                                    capture_output=True).returncode == 0:
             return python
     return owsdtest.skip("pymodbus is not installed")

@@ -69,7 +69,7 @@ def judges(scene):
     found = {}
     if shutil.which("mbpoll"):
         found["mbpoll"] = [sys.executable, "mbpoll"]
-    if has("/usr/bin/python3", "pymodbus"):
+    if has("/usr/bin/python3", "pymodbus.client"):
         found["pymodbus of the distribution"] = ["/usr/bin/python3", "pymodbus"]
     program = libmodbus(scene)
     if program:
