@@ -110,7 +110,7 @@ bool person_is_proxy(int fd, const struct config_web *options)
 
 uint64_t person_number(int fd, const struct config_web *options, const char *named)
 {
-	char words[PERSON_ADDRESS];
+	char words[PERSON_ADDRESS] = {0};
 
 	if (!look(fd, options, words) || !is_name(named))
 		named = words;

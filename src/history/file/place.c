@@ -104,15 +104,16 @@ int history_lock(const char *directory)
 	fd = openat(at, LOCK, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
 	err = fd < 0 ? -errno : 0;
 	close(at);
-	if (err)
+	if (fd < 0)
 		return err;
 	/* who may read a file or a directory may lock it: it would lock us out */
 	if (fstat(fd, &seen) < 0 || (seen.st_mode & 077 && fchmod(fd, 0600) < 0) ||
 	    flock(fd, LOCK_EX | LOCK_NB) < 0)
 		err = errno == EWOULDBLOCK ? -EBUSY : -errno;
-	if (err)
-		close(fd);
-	return err ? err : fd;
+	if (!err)
+		return fd;
+	close(fd);
+	return err;
 }
 
 int64_t history_boot_present(void)

@@ -33,7 +33,9 @@ static int open_again(int fd)
 
 	snprintf(path, sizeof(path), "/proc/self/fd/%d", fd);
 	again = open(path, O_RDWR | O_CLOEXEC);
-	return again < 0 ? -errno : again;
+	if (again < 0)
+		return -errno;
+	return again;
 }
 
 static int map_memory(int fd, size_t size, char **base)

@@ -110,8 +110,8 @@ static bool is_owsd(int pid)
 static void find_config(struct instance_info *info)
 {
 	char line[4096], path[48], folder[INSTANCE_FIELD];
-	const char *config = instance_config_of(
-		line, read_process(info->pid, "cmdline", line, sizeof(line)));
+	size_t given = read_process(info->pid, "cmdline", line, sizeof(line));
+	const char *config = instance_config_of(line, given);
 	ssize_t len = -1;
 
 	if (!config)
