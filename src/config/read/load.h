@@ -7,6 +7,9 @@
 struct config;
 struct config_report;
 
+/* Where a program has its configuration NAME.rio if its command line names none. */
+#define CONFIG_DIR "/etc/owsd"
+
 /*
  * Read and check a file. Returns 0, -EINVAL when report->errors > 0 (*config is NULL then, or, if
  * the report keeps what is wrong, there to be checked and freed), or a negative errno of reading

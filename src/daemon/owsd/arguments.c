@@ -60,7 +60,7 @@ static void usage(FILE *out)
 	fprintf(out, "usage: %s", program_invocation_short_name);
 	fputs(" [-c FILE] [-n NAME] [-t TARGET]... [-l [HOST:]PORT]...\n"
 	      "            [--check [--strict]] [--board[=ID]] [--rt PRIO] [-v] [-V] [-h]\n"
-	      "  -c, --config FILE   configuration (" ARGUMENTS_DIR "/NAME.rio);\n"
+	      "  -c, --config FILE   configuration (" CONFIG_DIR "/NAME.rio);\n"
 	      "                      without that file -t and -l serve the devices, no signals\n"
 	      "  -n, --name NAME     instance: signal prefix and name of the segments (OWS)\n"
 	      "  -t, --target TARGET in place of TargetName; again for another wire\n"
@@ -207,7 +207,7 @@ static int check_together(struct arguments *a)
 		return EXIT_USAGE;
 	}
 	if (!a->file) {
-		snprintf(a->default_file, sizeof(a->default_file), ARGUMENTS_DIR "/%s.rio",
+		snprintf(a->default_file, sizeof(a->default_file), CONFIG_DIR "/%s.rio",
 		         a->instance);
 		a->file = a->default_file;
 	}

@@ -7,10 +7,10 @@
 #pragma once
 
 #include "src/config/read/config.h"
+#include "src/config/read/load.h"
 #include "src/ground/text/log.h"
 #include "src/memory/shm/segment.h"
 
-#define ARGUMENTS_DIR "/etc/owsd"
 #define ARGUMENTS_LISTENS 16
 
 #define EXIT_RUN 1
@@ -18,7 +18,7 @@
 
 struct arguments {
 	const char *file, *instance;
-	char default_file[sizeof(ARGUMENTS_DIR "/.rio") + SEGMENT_NAME_MAX];
+	char default_file[sizeof(CONFIG_DIR "/.rio") + SEGMENT_NAME_MAX];
 	const char *targets[CONFIG_TARGETS_MAX];
 	unsigned target_count;
 	const char *listens[ARGUMENTS_LISTENS];

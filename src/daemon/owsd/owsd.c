@@ -403,8 +403,6 @@ int main(int argc, char **argv)
 		complain("/dev/null: %s", strerror(-status));
 		return EXIT_RUN;
 	}
-	/* a write beyond the file size limit then fails with an error instead of ending owsd */
-	signal(SIGXFSZ, SIG_IGN);
 	status = arguments_parse(argc, argv, &a);
 	if (status >= 0)
 		return status;

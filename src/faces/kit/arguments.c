@@ -2,12 +2,12 @@
 /* The command line of a face, and the messages about it. */
 #include <errno.h>
 #include <getopt.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/read/load.h"
 #include "src/faces/kit/arguments.h"
 #include "src/ground/service/resident.h"
 #include "src/ground/service/streams.h"
@@ -38,7 +38,7 @@ static void print_usage(FILE *out, const char *program, const struct face_option
 	else if (own->letter)
 		fprintf(out, " [--%s]", own->word);
 	fputs(" [--check] [-v] [-V] [-h]\n"
-	      "  -c, --config FILE   configuration, that of owsd (" FACE_DIR "/NAME.rio)\n"
+	      "  -c, --config FILE   configuration, that of owsd (" CONFIG_DIR "/NAME.rio)\n"
 	      "  -n, --name NAME     instance of owsd (OWS)\n",
 	      out);
 	if (own->letter && own->value)
@@ -81,7 +81,7 @@ static int arguments_check(struct face_arguments *a)
 	}
 	if (a->file)
 		return -1;
-	snprintf(a->default_file, sizeof(a->default_file), FACE_DIR "/%s.rio", a->instance);
+	snprintf(a->default_file, sizeof(a->default_file), CONFIG_DIR "/%s.rio", a->instance);
 	a->file = a->default_file;
 	return -1;
 }
@@ -109,8 +109,6 @@ int face_start(const char *program, const struct face_option *own, int argc, cha
 		face_complain(program, "/dev/null: %s", strerror(-err));
 		return FACE_EXIT_RUN;
 	}
-	/* a write beyond the file size limit then fails, and does not end the program */
-	signal(SIGXFSZ, SIG_IGN);
 	*a = (struct face_arguments){
 		.program = program, .instance = "OWS", .level = LOG_LEVEL_NOTICE};
 	letters[sizeof(letters) - 3] = own->letter;

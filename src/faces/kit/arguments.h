@@ -6,7 +6,6 @@
 
 #include "src/ground/text/log.h"
 
-#define FACE_DIR "/etc/owsd"
 #define FACE_EXIT_RUN 1
 #define FACE_EXIT_USAGE 2
 

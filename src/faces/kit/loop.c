@@ -139,11 +139,6 @@ static void feed(struct face *face, int64_t now_ns)
 	notify_send(&face->notify, NOTIFY_WATCHDOG);
 }
 
-static int64_t earlier(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
-
 /* Sleep until something is ready or the next thing is due, then give what is ready to the face. */
 static void wait_and_take(struct face *face, struct unix_signals *signals, int64_t now_ns)
 {
@@ -153,19 +148,19 @@ static void wait_and_take(struct face *face, struct unix_signals *signals, int64
 		{.fd = look_descriptor(face, now_ns), .events = POLLIN},
 	};
 	unsigned count = face->fd_count;
-	int64_t until = earlier(face->tick_ns, look_next(face, now_ns)), left, looked_ns;
+	int64_t until = earlier_ns(face->tick_ns, look_next(face, now_ns)), left, looked_ns;
 	struct timespec t;
 	int ready;
 
 	if (count)
-		until = earlier(until, now_ns + COMMAND_OLD_NS / 2); /* face_came() needs a look */
+		until = earlier_ns(until,
+		                   now_ns + COMMAND_OLD_NS / 2); /* face_came() needs a look */
 	if (*face->report)
-		until = earlier(until, face->report_ns);
+		until = earlier_ns(until, face->report_ns);
 	if (face->notify.watchdog_ns)
-		until = earlier(until, face->fed_ns + face->notify.watchdog_ns / 4);
+		until = earlier_ns(until, face->fed_ns + face->notify.watchdog_ns / 4);
 	left = until > now_ns ? until - now_ns : 0;
-	t = (struct timespec){.tv_sec = (time_t)(left / NS_PER_S),
-	                      .tv_nsec = (long)(left % NS_PER_S)};
+	t = timespec_of(left);
 	for (unsigned i = 0; i < count; i++)
 		fds[3 + i] = (struct pollfd){.fd = face->fds[i], .events = face->wanted[i]};
 	ready = ppoll(fds, 3 + count, &t, NULL);

@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <mosquitto.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -364,7 +363,6 @@ int mqtt_open(struct face *face)
 	struct mqtt *m = mqtt_own(face);
 	int64_t now_ns = ows_now();
 
-	signal(SIGPIPE, SIG_IGN);
 	/* nothing else bounds how long the look-up of a name may take */
 	setenv("RES_OPTIONS", "timeout:2 attempts:1", 0);
 	m->broker.fd = -1;

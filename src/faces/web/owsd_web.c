@@ -33,11 +33,6 @@
 #define ENDING_NS (300 * NS_PER_MS) /* slow clients keep no end waiting for longer */
 #define MIX 0x9e3779b97f4a7c15u
 
-static int64_t earlier(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
-
 /* No signal changes when owsd refuses its file: pages are told of it here. */
 static void look_for_refusal(struct web *web)
 {
@@ -73,9 +68,10 @@ static void owsd_web_run(struct web *web)
 	            web->face->live ? "" : ", owsd is not running");
 	pace_spent(&web->pace, clock_ns(CLOCK_THREAD_CPUTIME_ID) - begin);
 	now_ns = ows_now();
-	web->face->tick_ns = earlier(earlier(now_ns + TICK_NS, pace_due(&web->pace)),
-	                             earlier(http_next(web, now_ns), doors_next(&web->doors)));
-	web->face->tick_ns = earlier(web->face->tick_ns, wire_next(now_ns));
+	web->face->tick_ns = earlier_ns(
+		earlier_ns(now_ns + TICK_NS, pace_due(&web->pace)),
+		earlier_ns(http_next(web, now_ns), doors_next(&web->doors)));
+	web->face->tick_ns = earlier_ns(web->face->tick_ns, wire_next(now_ns));
 }
 
 /* --- Doors ----------------------------------------------------------------------------------- */

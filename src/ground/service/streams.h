@@ -7,7 +7,8 @@
 /*
  * Open /dev/null on each of standard input, output and error that the caller has closed, so that no
  * file opened later gets its number and with it the messages meant for the user. Writes there still
- * fail. Called first in main(). Returns 0 or a negative errno.
+ * fail, and so does one beyond the limit of a file's size, which would end the program otherwise.
+ * Called first in main(). Returns 0 or a negative errno.
  */
 int standard_open(void);
 

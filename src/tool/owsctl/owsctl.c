@@ -292,8 +292,6 @@ int main(int argc, char **argv)
 	c = standard_open();
 	if (c)
 		return ctl_fail("/dev/null: %s", strerror(-c));
-	/* a write to a file beyond its limit fails with EFBIG */
-	signal(SIGXFSZ, SIG_IGN);
 	/* getopt would print the option itself, which may steer the terminal */
 	opterr = 0;
 	while ((c = getopt_long(argc, argv, "+:n:t:Vh", longs, NULL)) != -1) {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/config/read/load.h"
 #include "src/memory/libows/open.h"
 #include "src/memory/shm/lock.h"
 #include "src/memory/shm/remains.h"
@@ -186,9 +187,6 @@ bool instance_runs(const struct shm_dir *dir, const char *name, int *pid)
 	*pid = info.pid;
 	return instance_is_up(info.state);
 }
-
-/* Where an owsd has its configuration if its command line names none. */
-#define CONFIG_DIR "/etc/owsd"
 
 static bool is_same_file(const char *a, const char *b)
 {

@@ -29,8 +29,7 @@ static int wait_fd(void *ctx, int fd, short events, int64_t until_ns)
 	int64_t left;
 
 	while ((left = until_ns - boottime(ctx)) > 0) {
-		struct timespec t = {.tv_sec = (time_t)(left / NS_PER_S),
-		                     .tv_nsec = (long)(left % NS_PER_S)};
+		struct timespec t = timespec_of(left);
 
 		if (ppoll(&poll_fd, 1, &t, NULL) > 0)
 			return 1;

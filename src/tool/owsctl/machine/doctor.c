@@ -82,7 +82,7 @@ bool doctor_look(struct doctor *d)
 	units_load(d);
 	/* of another machine it is that of the service */
 	if (*d->root)
-		snprintf(d->file, sizeof(d->file), "%s/etc/owsd/%s.rio", d->root, d->instance);
+		snprintf(d->file, sizeof(d->file), "%s" CONFIG_DIR "/%s.rio", d->root, d->instance);
 	else
 		instance_config(d->instance, d->file);
 	d->ows = NULL;
