@@ -67,7 +67,6 @@ def check_no_comment_in_c_is_wider_than_100_columns(tree):
 LONG = {"src/public/ows.h": "the interface of libows", "src/public/ows_layout.h": "the layout of the memory",
         "src/faces/mqtt/sparkplug.c": "a profile", "src/faces/mqtt/stream.c": "the rows of a node",
         "src/daemon/serve/client.c": "to be split",
-        "src/memory/control/door.c": "to be split",
         "hal/owserver/owserver.c": "to be split", "hal/sim/slave.c": "a simulated chip"}
 
 

@@ -22,6 +22,7 @@
 #include "src/memory/control/held.h"
 #include "src/memory/control/news.h"
 #include "src/memory/control/private.h"
+#include "src/memory/control/seat.h"
 #include "src/memory/control/welcome.h"
 #include "src/memory/shm/word.h"
 #include "src/public/ows.h"
@@ -125,7 +126,7 @@ static void take_event(struct control *c, uint32_t data)
 	if (data == LISTENER)
 		c->accepts = true;
 	else if (data < LISTENER && data % 2)
-		door_died(c, &c->seats[data / 2]);
+		seat_died(c, &c->seats[data / 2]);
 	else if (data < LISTENER)
 		door_event(c, &c->seats[data / 2]);
 }
@@ -217,7 +218,7 @@ void control_destroy(struct control *c)
 	control_stop(c);
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (control_state_of(&c->seats[i]) != CONTROL_FREE)
-			door_release(c, &c->seats[i]);
+			seat_release(c, &c->seats[i]);
 	held_forget(c);
 	news_close(c);
 	if (c->asked >= 0)
@@ -350,7 +351,7 @@ void control_answer(struct control *c, int err, const char *why)
 		if (control_state_of(p) != CONTROL_ASKED)
 			continue;
 		ask_answer(c, p, err, why);
-		door_drop(c, p, CONTROL_asked);
+		seat_drop(c, p, CONTROL_asked);
 	}
 	pthread_mutex_unlock(&c->lock);
 }
@@ -359,8 +360,7 @@ void control_answer(struct control *c, int err, const char *why)
  * The limits of a user hold for the new memory too, and the old one counts until it is empty. A
  * controller for which there is no room goes on without a memory, and leaves.
  */
-static void prepare_grant(struct control *c, struct control_seat *p,
-                          const struct controller_layout *layout, const struct rights *rights)
+static void prepare_grant(struct control *c, struct control_seat *p)
 {
 	size_t has = 0, bytes;
 	int err = -ENOSPC;
@@ -368,9 +368,9 @@ static void prepare_grant(struct control *c, struct control_seat *p,
 	for (unsigned i = 0; i < OWS_CONTROLLERS; i++)
 		if (c->seats[i].peer.uid == p->peer.uid)
 			has += c->seats[i].next.size;
-	if (!p->peer.uid || ((!has || has + layout->header.size <= CONTROL_MEMORY) &&
+	if (!p->peer.uid || ((!has || has + c->layout->header.size <= CONTROL_MEMORY) &&
 	                     held_of(c, p->peer.uid, &bytes) < CONTROL_HELD && !held_full(c)))
-		err = grant_make(&p->next, layout, rights, p);
+		err = grant_make(&p->next, c->layout, &c->rights, p);
 	if (err)
 		log_warning(c->log, "no memory for controller %s (process %d) after the reload: %s",
 		            p->who.name, (int)p->who.pid, strerror(-err));
@@ -387,7 +387,7 @@ void control_prepare(struct control *c, const struct config *config,
 		struct control_seat *p = &c->seats[i];
 
 		if (control_belongs(p))
-			prepare_grant(c, p, layout, &c->rights);
+			prepare_grant(c, p);
 	}
 }
 
@@ -420,7 +420,7 @@ static void take_next_memory(struct control *c, struct control_seat *p)
 	p->next = (struct control_grant){.memfd = -1, .own = -1};
 	p->welcomed = false;
 	if (!p->now.memory.base)
-		door_drop(c, p, CONTROL_refused_errors);
+		seat_drop(c, p, CONTROL_refused_errors);
 }
 
 void control_reloaded(struct control *c)

@@ -95,7 +95,7 @@ struct control_seat {
 	uint8_t token[16];
 	int64_t until_ns; /* of CONTROL_HALF, CONTROL_ASKING, CONTROL_ASKED */
 	bool commands;    /* it wants to, by its hello */
-	bool leaves;      /* door_drop() was there */
+	bool leaves;      /* seat_drop() was there */
 	bool connected;   /* the porter has not been asked to hang up */
 	enum welcome_deed deed;
 	int refused;   /* with this errno it is; 0: it is not */
@@ -107,6 +107,11 @@ struct control_seat {
 static inline enum control_state control_state_of(const struct control_seat *p)
 {
 	return (enum control_state)__atomic_load_n(&p->state, __ATOMIC_ACQUIRE);
+}
+
+static inline void control_enter(struct control_seat *p, enum control_state state)
+{
+	__atomic_store_n(&p->state, state, __ATOMIC_RELEASE);
 }
 
 /* Does the seat belong to a controller that joins or has joined? */
@@ -178,6 +183,11 @@ struct control {
 	struct log_rate refused, full;
 	struct bus_counter counters[CONTROL_COUNTER_COUNT];
 };
+
+static inline void control_tally(struct control *c, enum control_counter what)
+{
+	bus_count(&c->counters[what], 1);
+}
 
 /* Each thread that takes the lock has the time of that moment in now_ns, not another's last. */
 static inline void control_lock(struct control *c)
