@@ -109,7 +109,7 @@ def test_what_is_lost_is_unavailable_within_its_time(scene):
     house = House(scene, {**ROOM, "StaleAfter": 4}, RELAY, attic,
                   wire=f"DS18B20 {ATTIC} as attic temperature 18.25\nat 5s every 40s unplug attic for 20s\n")
     judge = HomeAssistant(scene, house.broker.port)
-    chip = f"owsd/pi7/chip/{ATTIC}"
+    chip = f"owsd/pi7/chip/{ATTIC}/state"
     # a thermometer that is pulled off, and is put back
     judge.shows("sensor.attic", "18.25", 60)
     house.says(chip, "online")

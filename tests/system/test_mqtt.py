@@ -25,8 +25,8 @@ def test_values_stand_at_the_broker_with_quality_and_time_and_a_bad_one_without_
     absent = house.arrives("absent", lambda m: m["q"] == 8)
     assert (absent["v"], absent["good"], absent["why"]) == (None, False, "device absent"), absent
     house.says(STATE, "online")
-    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
-    house.says("owsd/pi7/chip/28.FFFFFFFFFFFF", "offline")
+    house.says(f"owsd/pi7/chip/{SENSOR}/state", "online")
+    house.says("owsd/pi7/chip/28.FFFFFFFFFFFF/state", "offline")
     for value in (True, False, True):
         house.set("relay", int(value))
         house.arrives("relay", lambda m, v=value: m["v"] is v and m["good"])
@@ -92,8 +92,8 @@ def test_a_chip_that_is_away_is_offline_though_nobody_knows_of_an_output_of_it(s
                   item("never", f"/{gone}/PIO.0", "bool", "output"))
     house.arrives("away", lambda m: m["q"] == 8)
     house.arrives("never", lambda m: m["q"] == 32)
-    house.says(f"owsd/pi7/chip/{gone}", "offline")
-    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
+    house.says(f"owsd/pi7/chip/{gone}/state", "offline")
+    house.says(f"owsd/pi7/chip/{SENSOR}/state", "online")
 
 
 def test_a_lost_owsd_takes_all_values_back_until_it_is_there_again(scene):
@@ -103,11 +103,11 @@ def test_a_lost_owsd_takes_all_values_back_until_it_is_there_again(scene):
     house.says(STATE, "offline")
     room = house.arrives("room", lambda m: not m["good"])
     assert room["v"] is None and room["why"] == "owsd not running", room
-    house.says(f"owsd/pi7/chip/{SENSOR}", "offline")
+    house.says(f"owsd/pi7/chip/{SENSOR}/state", "offline")
     scene.owsd(house.daemon.config, name=house.daemon.name)
     house.arrives("room", lambda m: m["good"])
     house.says(STATE, "online")
-    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
+    house.says(f"owsd/pi7/chip/{SENSOR}/state", "online")
 
 
 def test_a_broker_that_comes_late_or_forgets_all_gets_all(scene):

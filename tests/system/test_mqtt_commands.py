@@ -174,8 +174,8 @@ def devices(house, *more):
 
 def test_a_list_has_the_devices_of_the_table_and_those_that_were_found(scene):
     house = ready(scene, ROOM, {**ROOM, "Name": "again"}, ABSENT)
-    house.says(f"owsd/pi7/chip/{SENSOR}", "online")
-    house.says("owsd/pi7/chip/28.FFFFFFFFFFFF", "offline")
+    house.says(f"owsd/pi7/chip/{SENSOR}/state", "online")
+    house.says("owsd/pi7/chip/28.FFFFFFFFFFFF/state", "offline")
     until(lambda: SWITCH in devices(house)[0], 20, lambda: devices(house)[1])
     found, answer = devices(house)
     assert sorted(found) == sorted([SENSOR, SWITCH, "28.FFFFFFFFFFFF"]) and answer["searched"], answer

@@ -44,7 +44,7 @@ def test_each_chip_that_was_there_is_a_device_by_its_id_behind_the_node(scene):
         "ids": [SENSOR], "name": "room", "mdl": "DS18B20", "mf": "Maxim Integrated", "sn": SENSOR,
         "via_device": "owsd_pi7", "cu": "http://pi7:8080/"}, message
     assert message["o"]["name"] == "owsd"
-    assert [a["t"] for a in message["avty"]] == ["owsd/pi7/state", f"owsd/pi7/chip/{SENSOR}"]
+    assert [a["t"] for a in message["avty"]] == ["owsd/pi7/state", f"owsd/pi7/chip/{SENSOR}/state"]
     assert message["avty_mode"] == "all" and message["qos"] == 1
     room = message["cmps"]["owsd_28_A0B1C2000001_temperature"]
     assert room["p"] == "sensor" and room["name"] is None and room["stat_t"] == "owsd/pi7/room"
@@ -134,7 +134,7 @@ def test_a_chip_that_is_replaced_keeps_its_device_and_entities(scene):
     assert first["dev"]["ids"] == second["dev"]["ids"] == [SENSOR], second
     # the number on it is that of the chip that is there
     assert (first["dev"]["sn"], second["dev"]["sn"]) == (SENSOR, SWITCH), second
-    assert f"owsd/pi7/chip/{SENSOR}" in house.kept()
+    assert f"owsd/pi7/chip/{SENSOR}/state" in house.kept()
 
 
 def test_what_went_while_owsd_mqtt_was_down_is_emptied_and_nothing_of_others(scene):
@@ -152,11 +152,11 @@ def test_what_went_while_owsd_mqtt_was_down_is_emptied_and_nothing_of_others(sce
     house.daemon.signal(signal.SIGHUP)
     until(lambda: scene.get(house.daemon, "cellar"), 20, "owsd has reloaded")
     house.face = house.start()
-    gone = {"owsd/pi7/room", "owsd/pi7/room/alarm", "owsd/pi7/relay", f"owsd/pi7/chip/{SWITCH}", f"owsd/pi7/chip/{SWITCH}/problem", PORTS}
+    gone = {"owsd/pi7/room", "owsd/pi7/room/alarm", "owsd/pi7/relay", f"owsd/pi7/chip/{SWITCH}/state", f"owsd/pi7/chip/{SWITCH}/problem", PORTS}
     until(lambda: not gone & set(house.kept()), 30, lambda: gone & set(house.kept()), step=0.5)
     kept = house.kept()
     assert {t: kept.get(t) for t in others} == others, kept
-    assert {CHIP, NODE, "owsd/pi7/cellar", "owsd/pi7/type", f"owsd/pi7/chip/{SENSOR}", PROBLEM, "owsd/pi7/health"} <= set(kept), kept
+    assert {CHIP, NODE, "owsd/pi7/cellar", "owsd/pi7/type", f"owsd/pi7/chip/{SENSOR}/state", PROBLEM, "owsd/pi7/health"} <= set(kept), kept
     assert kept["owsd/pi7/state"] == "online", kept
 
 
@@ -236,7 +236,7 @@ def test_a_chip_that_is_written_in_two_ways_is_one_device(scene):
     assert {c["stat_t"] for c in message["cmps"].values()} - {PROBLEM} == {f"owsd/pi7/{n}" for n in ("room", "coarse", "again")}
     kept = house.kept()
     assert {t for t in kept if t.startswith("homeassistant/")} == {CHIP, NODE}, kept
-    assert {t for t in kept if "/chip/" in t} == {f"owsd/pi7/chip/{SENSOR}", PROBLEM}, kept
+    assert {t for t in kept if "/chip/" in t} == {f"owsd/pi7/chip/{SENSOR}/state", PROBLEM}, kept
 
 
 def test_a_key_is_a_tag_each_time_it_comes(scene):

@@ -26,14 +26,6 @@ static bool will(void *ctx, bool ending, const struct outlet *to)
 	return put;
 }
 
-static void listen_below(struct mqtt *m, const char *below)
-{
-	char topic[TOPIC_SIZE];
-
-	snprintf(topic, sizeof(topic), "%.300s/%s", m->options.prefix, below);
-	client_subscribe(&m->broker, topic);
-}
-
 static void on_connected(void *ctx)
 {
 	struct mqtt *m = ctx;
@@ -42,33 +34,18 @@ static void on_connected(void *ctx)
 	past_lost(&m->past);
 	if (m->past.on)
 		missed_keep_number(&m->past.missed, m->stream.bdseq);
-	if (m->stream.profile->listen) {
-		m->stream.profile->listen(&m->stream, topic);
-		client_subscribe(&m->broker, topic);
-	}
 	m->stream.host_there = m->stream.born = false;
 	m->stream.host_ms = 0; /* the clock of the host may have been set back */
-	if (m->stream.host) {
-		m->stream.profile->listen_host(&m->stream, topic);
+	if (m->stream.host && m->broker.connects < 2)
+		log_notice(m->broker.face->log,
+		           "nothing is published until the primary host %s is online",
+		           m->stream.host);
+	for (int i = 0; i < BROKER_TOPICS; i++) {
+		profiles_listen(&m->stream, m->options.rename, i, topic);
+		if (!*topic)
+			break;
 		client_subscribe(&m->broker, topic);
-		if (m->broker.connects < 2)
-			log_notice(m->broker.face->log,
-			           "nothing is published until the primary host %s is online",
-			           m->stream.host);
 	}
-	/* without Write they are refused, with a reason */
-	if (m->stream.profile->listen_write) {
-		m->stream.profile->listen_write(&m->stream, topic);
-		client_subscribe(&m->broker, topic);
-	} else {
-		listen_below(m, m->options.profile->commands);
-	}
-	if (m->stream.profile->asks) {
-		listen_below(m, m->options.profile->asks);
-		listen_below(m, "+/" TOPIC_READ);
-	}
-	if (m->stream.profile->asks && m->options.rename)
-		listen_below(m, "+/" TOPIC_RENAME);
 	m->health_ns = m->sweep_ns = 0;
 	m->sweep = true;
 	stream_begin(&m->stream);

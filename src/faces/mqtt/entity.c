@@ -379,7 +379,7 @@ void entity_problem_json(struct json *json, const struct stream *s, const struct
 	entity_begin(json, id, "_problem", "binary_sensor", "Problem");
 	json_string(json, "dev_cla", "problem");
 	json_string(json, "ent_cat", "diagnostic");
-	snprintf(topic, sizeof(topic), "%.480s/" TOPIC_PROBLEM, chip->topic);
+	plain_problem_topic(s, chip, topic);
 	json_string(json, "stat_t", topic);
 	json_string(json, "val_tpl", "{{ 'ON' if value_json.problem else 'OFF' }}");
 	json_string(json, "json_attr_t", topic);

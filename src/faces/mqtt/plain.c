@@ -14,6 +14,11 @@ void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC
 	snprintf(topic, TOPIC_SIZE, "%s/%s", s->prefix, row->level);
 }
 
+void plain_problem_topic(const struct stream *s, const struct chip *chip, char topic[TOPIC_SIZE])
+{
+	snprintf(topic, TOPIC_SIZE, "%s/" TOPIC_CHIP "/%s/" TOPIC_PROBLEM, s->prefix, chip->id);
+}
+
 bool plain_state(struct stream *s, enum stream_node node)
 {
 	return stream_put_below(s, TOPIC_STATE, node == STREAM_THERE ? "online" : "offline");
@@ -245,7 +250,7 @@ static bool publish_problem(struct stream *s, const struct row *row)
 	json_string(&json, "signal", first ? first->name : NULL);
 	json_int(&json, "bad", bad);
 	json_object_end(&json);
-	snprintf(topic, sizeof(topic), "%.480s/" TOPIC_PROBLEM, chip->topic);
+	plain_problem_topic(s, chip, topic);
 	if (!stream_put(s, topic, true))
 		return false;
 	chip->problem_print = print;
@@ -295,8 +300,8 @@ void plain_alarm(struct stream *s, const struct ows_alarm *alarm)
 	stream_put(s, topic, false);
 }
 
-const char *const plain_below[] = {"+", "+/alarm", TOPIC_CHIP "/+", TOPIC_CHIP "/+/" TOPIC_PROBLEM,
-                                   NULL};
+const char *const plain_below[] = {"+", "+/alarm", TOPIC_CHIP "/+/" TOPIC_STATE,
+                                   TOPIC_CHIP "/+/" TOPIC_PROBLEM, NULL};
 
 const struct profile profile_plain = {
 	PLAIN,

@@ -6,6 +6,7 @@
 
 extern const char *const plain_below[];
 void plain_topic(const struct stream *s, const struct row *row, char topic[TOPIC_SIZE]);
+void plain_problem_topic(const struct stream *s, const struct chip *chip, char topic[TOPIC_SIZE]);
 bool plain_writes(const struct stream *s, const char *topic, const char *below);
 /* Count the quality of a row for its chip. True: the first that shows that the chip is there. */
 bool plain_chip_look(struct stream *s, struct row *row, uint8_t quality);

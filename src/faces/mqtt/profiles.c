@@ -51,6 +51,28 @@ static bool is_own(const struct profile *profile, const struct stream *s)
 	return profile == s->profile || !strcmp(id, s->node);
 }
 
+void profiles_listen(const struct stream *s, bool rename, int number, char topic[TOPIC_SIZE])
+{
+	const struct profile *p = s->profile;
+	void (*const by[])(const struct stream *,
+	                   char *) = {p->listen, s->host ? p->listen_host : NULL, p->listen_write};
+	/* without Write they are refused, with a reason */
+	const char *const below[] = {p->commands, p->asks, p->asks ? "+/" TOPIC_READ : NULL,
+	                             p->asks && rename ? "+/" TOPIC_RENAME : NULL};
+
+	topic[0] = '\0';
+	for (size_t i = 0; i < sizeof(by) / sizeof(by[0]); i++)
+		if (by[i] && !number--) {
+			by[i](s, topic);
+			return;
+		}
+	for (size_t i = 0; i < sizeof(below) / sizeof(below[0]); i++)
+		if (below[i] && !number--) {
+			snprintf(topic, TOPIC_SIZE, "%.300s/%s", s->prefix, below[i]);
+			return;
+		}
+}
+
 void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE])
 {
 	const char *const *last = NULL;

@@ -15,8 +15,11 @@ const struct profile *profiles_find(const char *name);
 void profiles_prefix(const struct profile *profile, const char *topic, const char *node,
                      char prefix[TOPIC_SIZE]);
 
+/* The topics to listen to, with wildcards, by number; "" after the last. No two overlap. */
+void profiles_listen(const struct stream *s, bool rename, int number, char topic[TOPIC_SIZE]);
 /*
  * The topics where the broker may keep what is no more, of other profiles too; "" after the last.
+ * None overlaps with those of profiles_listen(): a broker hands out a message for each that fits.
  */
 void profiles_place(const struct stream *s, int number, char topic[TOPIC_SIZE]);
 /* A retained message that came there, NULL if empty: nobody writes the topic any more, so empty

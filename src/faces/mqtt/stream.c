@@ -273,7 +273,7 @@ static bool make_chips(struct stream *s)
 		if (!same) {
 			*chip = (struct chip){
 				.id = row->chip_id, .family = row->info.family, .first = i};
-			if (asprintf(&chip->topic, "%s/" TOPIC_CHIP "/%s", s->prefix,
+			if (asprintf(&chip->topic, "%s/" TOPIC_CHIP "/%s/" TOPIC_STATE, s->prefix,
 			             row->chip_id) < 0) {
 				chip->topic = NULL;
 				return false;

@@ -8,7 +8,7 @@
 #define TOPIC_NAME 192 /* the name of a signal, with what is escaped in it */
 
 /* Levels beside the signals; a signal of such a name has its first letter as %XX. */
-#define TOPIC_STATE "state"
+#define TOPIC_STATE "state" /* of the node; below a chip, of that */
 #define TOPIC_HEALTH "health"
 #define TOPIC_CHIP "chip"
 #define TOPIC_RESULT "result"   /* beside commands */

@@ -193,7 +193,7 @@ static void test_a_switch_takes_on_and_off_and_its_chip_has_to_be_there(void)
 	has(published_at(&p, topic), "\"ids\":[\"29.000000000001\"]");
 	has(published_at(&p, topic), "\"via_device\":\"owsd_pi\"");
 	has(published_at(&p, topic), "\"avty\":[{\"t\":\"o/pi/state\"},"
-	                             "{\"t\":\"o/pi/chip/29.000000000001\",\"val_tpl\":");
+	                             "{\"t\":\"o/pi/chip/29.000000000001/state\",\"val_tpl\":");
 }
 
 static void test_a_number_has_its_range_a_light_its_scale_a_cover_its_ends(void)
@@ -364,7 +364,7 @@ static void test_old_readers_has_a_message_of_its_own_if_that_is_wanted(void)
 	TEST_ASSERT_NULL(strstr(p.said, "/device/"));
 	c = published_at(&p, topic);
 	has(c, "{\"dev\":{\"ids\":[\"29.000000000001\"]");
-	has(c, ",\"avty\":[{\"t\":\"o/pi/state\"},{\"t\":\"o/pi/chip/29.000000000001\",");
+	has(c, ",\"avty\":[{\"t\":\"o/pi/state\"},{\"t\":\"o/pi/chip/29.000000000001/state\",");
 	has(c,
 	    "\"avty_mode\":\"all\",\"qos\":1,\"p\":\"switch\",\"uniq_id\":\"owsd_29_000000000001_PIO_0\"");
 	TEST_ASSERT_NULL(strstr(c, "cmps"));

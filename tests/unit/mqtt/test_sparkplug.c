@@ -222,7 +222,7 @@ static void test_what_other_profiles_have_left_is_emptied_and_nothing_else(void)
 {
 	static const char *const theirs[] = {"plant/pi2/room", "spBv1.0/plant/NBIRTH/pi",
 	                                     "spBv1.0/plant/pi/room", "homie/5/pi/$state"};
-	static const char *const left[] = {"plant/pi/room", "plant/pi/chip/28.000000000001",
+	static const char *const left[] = {"plant/pi/room", "plant/pi/chip/28.000000000001/state",
 	                                   "homie/5/owsd-pi/$state",
 	                                   "/devices/owsd_pi/controls/room"};
 	char topic[TOPIC_SIZE], line[TOPIC_SIZE];

@@ -80,9 +80,9 @@ static void test_the_birth_has_all_and_the_state_is_last(void)
 	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
 	instance_put_text(&in, TITLE + 1, "a\"b", ows_now());
 	TEST_ASSERT_EQUAL_STRING(
-		"o/pi/chip/28.000000000001 online\n"
+		"o/pi/chip/28.000000000001/state online\n"
 		"o/pi/room {\"v\":21.5,\"good\":true,\"q\":192,\"t\":null}\n"
-		"o/pi/chip/28.000000000001/problem " WELL "o/pi/chip/29.000000000001 online\n"
+		"o/pi/chip/28.000000000001/problem " WELL "o/pi/chip/29.000000000001/state online\n"
 		"o/pi/title {\"v\":\"a\\\"b\",\"good\":true,\"q\":192,\"t\":null}\n"
 		"o/pi/chip/29.000000000001/problem " WELL "o/pi/state online\n",
 		pump());
@@ -129,7 +129,7 @@ static void test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_
 	instance_put_double(&in, ROOM + 1, 1, ows_now());
 	instance_put_text(&in, TITLE + 1, "x", ows_now());
 	room = 1;
-	TEST_ASSERT_EQUAL_STRING("o/pi/chip/28.000000000001 online\n", pump());
+	TEST_ASSERT_EQUAL_STRING("o/pi/chip/28.000000000001/state online\n", pump());
 	for (int i = 2; i < 50; i++) {
 		instance_put_double(&in, ROOM + 1, i, ows_now());
 		stream_changes(&s, &signal, 1);
@@ -148,11 +148,11 @@ static void test_a_chip_is_unknown_until_it_has_answered(void)
 	int signal = ROOM;
 
 	pump();
-	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/chip/28.000000000001 unknown\n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/chip/28.000000000001/state unknown\n"));
 	TEST_ASSERT_NULL(strstr(said, "001 online\n"));
 	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
 	stream_changes(&s, &signal, 1);
-	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/chip/28.000000000001 online\n", pump(), 33);
+	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/chip/28.000000000001/state online\n", pump(), 39);
 }
 
 static void test_of_a_chip_with_outputs_alone_a_command_shows_whether_it_is_there(void)
@@ -166,14 +166,14 @@ static void test_of_a_chip_with_outputs_alone_a_command_shows_whether_it_is_ther
 	instance_reload(&in, other, 3);
 	TEST_ASSERT_EQUAL_INT(0, ows_reopen(ows));
 	take_profile(&profile_homeassistant);
-	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/chip/29.000000000001 unknown\n"));
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/chip/29.000000000001/state unknown\n"));
 	TEST_ASSERT_NOT_NULL(strstr(said, "ha/device/owsd_29_000000000001/config"));
 	/* the other one can be asked, and has not answered */
-	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/chip/3A.000000000001 unknown\n"));
+	TEST_ASSERT_NOT_NULL(strstr(said, "o/pi/chip/3A.000000000001/state unknown\n"));
 	TEST_ASSERT_NULL(strstr(said, "ha/device/owsd_3A_000000000001/config"));
 	instance_put(&in, 3, 1, ows_now());
 	stream_changes(&s, &signal, 1);
-	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/chip/3A.000000000001 online\n", pump(), 33);
+	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/chip/3A.000000000001/state online\n", pump(), 39);
 	TEST_ASSERT_NOT_NULL(strstr(said, "ha/device/owsd_3A_000000000001/config"));
 }
 
@@ -183,10 +183,10 @@ static void test_an_owsd_that_is_lost_takes_all_back(void)
 	pump();
 	stream_live(&s, false);
 	TEST_ASSERT_EQUAL_STRING("o/pi/state offline\n"
-	                         "o/pi/chip/28.000000000001 offline\n"
+	                         "o/pi/chip/28.000000000001/state offline\n"
 	                         "o/pi/room {\"v\":null,\"good\":false,\"q\":26,"
 	                         "\"why\":\"owsd not running\",\"t\":null}\n"
-	                         "o/pi/chip/29.000000000001 offline\n"
+	                         "o/pi/chip/29.000000000001/state offline\n"
 	                         "o/pi/title {\"v\":null,\"good\":false,\"q\":26,"
 	                         "\"why\":\"owsd not running\",\"t\":null}\n",
 	                         pump());
@@ -201,7 +201,7 @@ static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(v
 		{"new", "/28.000000000001/temperature", OWS_DOUBLE, false, 0, "28000000000001"}};
 	static const char *const ours[] = {"o/pi/new",       "o/pi/new/set",
 	                                   "o/pi/room/note", "o/pi/state",
-	                                   "o/pi/health",    "o/pi/chip/28.000000000001",
+	                                   "o/pi/health",    "o/pi/chip/28.000000000001/state",
 	                                   "o/pi2/room",     "o/pi"};
 
 	pump();
@@ -217,8 +217,8 @@ static void test_what_the_broker_keeps_is_emptied_if_nobody_writes_it_any_more(v
 	pump();
 	TEST_ASSERT_EQUAL_STRING_LEN("o/pi/room {\"v\":null,", said, 20);
 	TEST_ASSERT_NOT_NULL(strstr(said, "}\no/pi/room \n"));
-	profiles_kept(&s, "o/pi/chip/29.000000000001", "online");
-	TEST_ASSERT_EQUAL_STRING("o/pi/chip/29.000000000001 \n", pump());
+	profiles_kept(&s, "o/pi/chip/29.000000000001/state", "online");
+	TEST_ASSERT_EQUAL_STRING("o/pi/chip/29.000000000001/state \n", pump());
 	profiles_kept(&s, "o/pi/new/alarm", "x");
 	TEST_ASSERT_EQUAL_STRING("o/pi/new/alarm \n", pump());
 	/* nothing is known of what there is while owsd is away */
@@ -244,7 +244,7 @@ static const char *places(void)
 static void test_the_topics_of_all_profiles_are_looked_at_our_own_first(void)
 {
 	TEST_ASSERT_EQUAL_STRING(
-		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+/state\no/pi/chip/+/problem\n"
 		"ha/device/+/config\nha/+/owsd_pi/+/config\n"
 		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
 		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/+\n/devices/owsd_pi/controls/+\n"
@@ -254,10 +254,51 @@ static void test_the_topics_of_all_profiles_are_looked_at_our_own_first(void)
 	TEST_ASSERT_EQUAL_STRING(
 		"homie/5/owsd-pi/+\nhomie/5/owsd-pi/+/+\n"
 		"ha/device/+/config\nha/+/owsd_pi/+/config\n"
-		"o/pi/+\no/pi/+/alarm\no/pi/chip/+\no/pi/chip/+/problem\n"
+		"o/pi/+\no/pi/+/alarm\no/pi/chip/+/state\no/pi/chip/+/problem\n"
 		"/devices/owsd_pi/meta\n/devices/owsd_pi/meta/+\n/devices/owsd_pi/controls/+\n"
 		"/devices/owsd_pi/controls/+/meta\n/devices/owsd_pi/controls/+/meta/+\n\n",
 		places());
+}
+
+#define PROFILE_NAME(name) #name,
+
+/* Is there a topic that both take? Neither has '#'. */
+static bool overlap(const char *a, const char *b)
+{
+	size_t n = strcspn(a, "/"), m = strcspn(b, "/");
+	bool wild = (n == 1 && *a == '+') || (m == 1 && *b == '+');
+
+	if (!wild && (n != m || strncmp(a, b, n) != 0))
+		return false;
+	return a[n] && b[m] ? overlap(a + n + 1, b + m + 1) : a[n] == b[m];
+}
+
+/* A broker hands a message out once for each filter that it fits. */
+static void test_no_command_or_question_stands_where_the_broker_is_asked_what_it_keeps(void)
+{
+	static const char *const names[] = {MQTT_PROFILES(PROFILE_NAME)};
+	char filters[40][TOPIC_SIZE];
+
+	TEST_ASSERT_TRUE(overlap("a/+/c", "a/b/+"));
+	TEST_ASSERT_FALSE(overlap("a/+/c", "a/b/d") || overlap("a/+", "a/b/c"));
+	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+		int n = 0, place = 0;
+
+		take_profile(profiles_find(names[i]));
+		s.host = s.profile->listen_host ? "scada" : NULL;
+		do
+			profiles_listen(&s, true, n, filters[n]);
+		while (*filters[n] && ++n);
+		TEST_ASSERT_TRUE(n > 0 && n <= 6);
+		do
+			profiles_place(&s, place, filters[n + place]);
+		while (*filters[n + place] && ++place);
+		n += place;
+		for (int a = 0; a < n; a++)
+			for (int b = 0; b < a; b++)
+				TEST_ASSERT_FALSE_MESSAGE(overlap(filters[a], filters[b]),
+				                          filters[a]);
+	}
 }
 
 static void test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node(void)
@@ -509,6 +550,7 @@ int main(void)
 	RUN_TEST(test_signals_of_one_property_are_told_apart_and_a_chip_has_one_form);
 	RUN_TEST(test_an_alarm_is_an_event_for_those_who_are_there);
 	RUN_TEST(test_the_topics_of_all_profiles_are_looked_at_our_own_first);
+	RUN_TEST(test_no_command_or_question_stands_where_the_broker_is_asked_what_it_keeps);
 	RUN_TEST(test_what_another_profile_has_left_is_emptied_if_it_is_of_this_node);
 	RUN_TEST(test_a_node_with_the_slug_of_another_empties_nothing_of_it);
 	RUN_TEST(test_homie_has_no_value_that_is_bad_and_an_alert_instead);
