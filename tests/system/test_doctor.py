@@ -214,6 +214,39 @@ def test_enable_shows_each_command_and_the_address_of_the_page(scene):
                          f"systemctl restart owsd-mqtt@{name}.service\n"), asked
 
 
+def test_a_group_that_no_file_asks_for_any_more_is_taken_back(scene):
+    if os.geteuid() != 0:
+        owsdtest.skip("only root may have another /etc")
+    plant = scene.file("plant.sim", BUSES + CHIPS)
+    text = owsdtest.rio(f"sim:{plant}", [LIVING])
+
+    def keys(words):
+        return text.replace("  Item", f"  Web {{ {words} }}\n  Item", 1)
+    daemon = scene.owsd(keys("Configure on"), name=scene.name())
+    etc = scene.path / "etc"
+    (etc / "owsd").mkdir(parents=True)
+    (etc / "group").write_text("owsd-control:x:990:anna,owsd-web\nowsd-config:x:991:owsd-web\nowsd-mqtt:x:992:\n")
+
+    def taken(verb, program):
+        done = subprocess.run(["unshare", "-m", "sh", "-c", 'mount --bind "$0" /etc && exec "$@"', etc, owsdtest.OWSCTL,
+                               "-n", daemon.name, verb, "--dry-run", program],
+                              capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
+        assert done.returncode == 0, done
+        return re.findall(r"\+ gpasswd -d owsd-(?:web|writer) owsd-(.*)", done.stdout)
+    assert taken("enable", "web") == ["control"]
+    assert taken("disable", "web") == ["control", "config"]
+    assert not taken("enable", "mqtt")
+    assert not taken("disable", "writer")  # which has its group from the package
+    # an instance beside it has the same users; of a file with errors nobody knows what it asks for
+    other = etc / "owsd/other.rio"
+    other.write_text(keys("Write on"))
+    assert taken("disable", "web") == ["config"]
+    other.write_text(keys("Write off"))
+    assert taken("disable", "web") == ["control", "config"]
+    other.write_text("OwsDrv {")
+    assert not taken("disable", "web")
+
+
 def test_what_is_safe_is_run_by_fix_and_shown(scene):
     if os.geteuid() != 0:
         owsdtest.skip("only root may have it mended")

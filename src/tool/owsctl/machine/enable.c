@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * owsctl enable and disable: switches a program beside owsd on and off, with the groups that its
- * block of the configuration asks for.
+ * owsctl enable and disable: switches a program beside owsd on and off, and keeps its user in the
+ * groups that its block of the configuration asks for.
  */
 #include <errno.h>
 #include <getopt.h>
+#include <glob.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -15,13 +16,15 @@
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/machine/command.h"
 #include "src/tool/owsctl/machine/faces.h"
+#include "src/tool/owsctl/machine/seen.h"
 #include "src/tool/owsctl/running.h"
 #include "src/tool/owsctl/verbs.h"
 
 struct change {
 	const struct ctl *ctl;
 	const struct face_row *row;
-	struct config *config;
+	char file[INSTANCE_FIELD];
+	struct config *config; /* of the instance; NULL: the program is switched off */
 	bool dry;
 	int err; /* of the first command that failed: no other is run after it */
 	char socket[FACE_UNIT], service[FACE_UNIT];
@@ -57,6 +60,42 @@ static void give_rights(struct change *change)
 	}
 }
 
+/* Does the file of another instance ask for it? One that cannot be read may. */
+static bool others_ask(const struct change *change, const char *key)
+{
+	bool asked = false;
+	glob_t found = {0};
+
+	glob(CONFIG_DIR "/*.rio", 0, NULL, &found);
+	for (size_t i = 0; i < found.gl_pathc && !asked; i++) {
+		struct config_report report = {0};
+		struct config *config = NULL;
+
+		if (!strcmp(found.gl_pathv[i], change->file))
+			continue;
+		asked = config_load(found.gl_pathv[i], &report, &config) ||
+		        face_has(config, change->row->program, key);
+		config_free(config);
+	}
+	globfree(&found);
+	return asked;
+}
+
+/* The groups of the keys that are off in all instances: the user is the same. */
+static void take_rights(struct change *change)
+{
+	const char *program = change->row->program;
+
+	for (unsigned i = 0; i < FACE_RIGHTS; i++) {
+		const struct face_right *right = &face_rights[i];
+
+		if (face_may(program, right->key) && seen_in_group("", program, right->group) &&
+		    !(change->config && face_has(change->config, program, right->key)) &&
+		    !others_ask(change, right->key))
+			run(change, "gpasswd", "-d", program, right->group, NULL);
+	}
+}
+
 static void switch_on(struct change *change)
 {
 	/* systemd knows no address of the file, so the program itself has to run for them */
@@ -64,6 +103,7 @@ static void switch_on(struct change *change)
 	              face_has(change->config, change->row->program, "Listen");
 
 	give_rights(change);
+	take_rights(change);
 	if (change->row->socket)
 		run(change, "systemctl", "enable", "--now", change->socket, NULL);
 	if (serves)
@@ -104,7 +144,6 @@ static int no_face(const struct ctl *ctl, const char *word, const struct face_ro
 static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
 {
 	static struct face_row rows[FACE_ROWS];
-	char file[INSTANCE_FIELD];
 	struct config_report report = {.line = ctl_report};
 	struct change change = {.ctl = ctl};
 	int count = faces_table(rows);
@@ -128,14 +167,15 @@ static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
 	if (!change.dry && !face_is_installed("", change.row))
 		return ctl_fail("%s is not installed: sudo apt install %s", change.row->program,
 		                change.row->package);
+	instance_config(ctl->instance, change.file);
 	if (!on) {
 		run(&change, "systemctl", "disable", "--now", change.service,
 		    change.row->socket ? change.socket : NULL);
+		take_rights(&change);
 		return change.err ? CTL_FAILED : CTL_DONE;
 	}
-	instance_config(ctl->instance, file);
 	/* a program does not start with a file that it refuses; the reason is printed */
-	if (config_load(file, &report, &change.config))
+	if (config_load(change.file, &report, &change.config))
 		return CTL_FAILED;
 	switch_on(&change);
 	if (!change.err)

@@ -91,6 +91,13 @@ bool face_has_block(const struct config *config, const char *program)
 	return block && option_is_given(block, config);
 }
 
+bool face_may(const char *program, const char *key)
+{
+	const struct option_def *block = block_of(program);
+
+	return block && option_find(block->inside, key) >= 0;
+}
+
 bool face_has(const struct config *config, const char *program, const char *key)
 {
 	const struct option_def *block = block_of(program);

@@ -209,7 +209,7 @@ static bool take_sysusers(struct doctor *d, const char *path)
 
 	while (in && !missing && fgets(line, sizeof(line), in))
 		missing = sscanf(line, "%3s %63s %63s", kind, user, group) == 3 &&
-		          !strcmp(kind, "m") && !seen_in_group(d, user, group);
+		          !strcmp(kind, "m") && !seen_in_group(d->root, user, group);
 	if (in)
 		fclose(in);
 	if (!missing)
@@ -235,7 +235,7 @@ static void check_service_users(struct doctor *d)
 static void check_person(struct doctor *d)
 {
 	const struct passwd *user = *d->root || d->err != -EACCES ? NULL : getpwuid(geteuid());
-	bool member = user && seen_in_group(d, user->pw_name, "owsd");
+	bool member = user && seen_in_group(d->root, user->pw_name, "owsd");
 
 	if (!user)
 		return;

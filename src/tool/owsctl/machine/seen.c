@@ -31,14 +31,14 @@ bool seen_output(struct doctor *d, const char *name, const char *const words[])
 	return in != NULL;
 }
 
-bool seen_in_group(const struct doctor *d, const char *user, const char *group)
+bool seen_in_group(const char *root, const char *user, const char *group)
 {
 	char path[512];
 	struct group *entry;
 	bool found = false;
 	FILE *in;
 
-	snprintf(path, sizeof(path), "%s/etc/group", d->root);
+	snprintf(path, sizeof(path), "%s/etc/group", root);
 	in = fopen(path, "re");
 	while (in && !found && (entry = fgetgrent(in)))
 		for (char **member = entry->gr_mem; !strcmp(entry->gr_name, group) && *member;

@@ -48,5 +48,5 @@ struct doctor {
 
 /* The output of a command, in d->text; of a recorded machine its file recorded/NAME. */
 bool seen_output(struct doctor *d, const char *name, const char *const words[]);
-/* Is the user a member of the group, by etc/group? */
-bool seen_in_group(const struct doctor *d, const char *user, const char *group);
+/* Is the user a member of the group, by etc/group below the root? */
+bool seen_in_group(const char *root, const char *user, const char *group);

@@ -200,7 +200,7 @@ static void check_face(struct doctor *d, const struct face_row *row)
 		const struct face_right *right = &face_rights[i];
 
 		if (!face_has(d->config, row->program, right->key) ||
-		    seen_in_group(d, row->program, right->group))
+		    seen_in_group(d->root, row->program, right->group))
 			continue;
 		report_add(&d->found, BOARD_MISSING,
 		           "%s is on for %s, which is not in the group %s", right->key,
