@@ -7,6 +7,7 @@
 #include "src/config/read/buses.h"
 #include "src/config/read/load.h"
 #include "src/config/read/report.h"
+#include "src/config/read/targets.h"
 #include "src/daemon/host/host.h"
 #include "src/daemon/host/reload.h"
 #include "src/daemon/host/target.h"
@@ -20,6 +21,7 @@
 #include "src/ground/service/streams.h"
 #include "src/ground/service/unix_signals.h"
 #include "src/ground/text/log.h"
+#include "src/ground/text/shell.h"
 #include "src/memory/control/control.h"
 #include "src/memory/shm/porter.h"
 #include "src/public/ows.h"
@@ -370,6 +372,7 @@ static int owsd_run(const struct arguments *a, struct config *config, struct ins
 static void explain_no_file(const struct arguments *a, struct told *told)
 {
 	const char *target = a->target_count ? a->targets[0] : "auto";
+	char first[TARGET_MAX + 1], word[SHELL_WORD];
 	struct arguments devices = *a;
 	struct config *config;
 
@@ -377,8 +380,9 @@ static void explain_no_file(const struct arguments *a, struct told *told)
 	if (owsd_load(&devices, told, &config))
 		return;
 	config_free(config);
-	complain("-c FILE names another; owsctl%s -t %.*s scan --rio makes one",
-	         strncmp(target, "sim:", 4) == 0 ? "-sim" : "", (int)strcspn(target, ",|"), target);
+	snprintf(first, sizeof(first), "%.*s", (int)strcspn(target, ",|"), target);
+	complain("-c FILE names another; owsctl%s -t %s scan --rio makes one",
+	         strncmp(target, "sim:", 4) == 0 ? "-sim" : "", shell_word(first, word));
 	complain("to serve the devices without a configuration, give %s",
 	         a->target_count   ? "-l PORT too"
 	         : a->listen_count ? "-t TARGET too"

@@ -23,7 +23,7 @@ enum board_kind {
 struct board_line {
 	enum board_kind kind;
 	char text[400];
-	char remedy[300]; /* for a shell; "" none */
+	char remedy[1000]; /* for a shell; "" none */
 };
 
 struct board_report {

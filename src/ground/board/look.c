@@ -106,8 +106,8 @@ static void report_adapter(const struct scene *scene, unsigned number)
 	           "answers come sooner",
 	           hz / 1000, scene->board->khz);
 	if (scene->board->speed_line[0])
-		report_remedy(scene->report, "echo %s | sudo tee -a %s && sudo reboot",
-		              scene->board->speed_line, board_config(scene->root));
+		report_command(scene->report, "echo %s | sudo tee -a %s && sudo reboot",
+		               scene->board->speed_line, board_config(scene->root));
 }
 
 static void miss_interface(const struct scene *scene, unsigned number)
@@ -145,13 +145,13 @@ static void miss_permission(const struct scene *scene, const char *device, const
 
 	report_add(scene->report, BOARD_MISSING, "no permission for %s", device);
 	if (group && (st->st_mode & 060) == 060)
-		report_remedy(scene->report, "sudo adduser %s %s    # then log in again",
-		              user ? user->pw_name : "USER", group->gr_name);
+		report_command(scene->report, "sudo adduser %s %s    # then log in again",
+		               user ? user->pw_name : "USER", group->gr_name);
 	else
-		report_remedy(scene->report,
-		              "sudo chgrp i2c %s && sudo chmod g+rw %s    # the package's "
-		              "udev rule does it at each start",
-		              device, device);
+		report_command(scene->report,
+		               "sudo chgrp i2c %s && sudo chmod g+rw %s    # the package's "
+		               "udev rule does it at each start",
+		               device, device);
 }
 
 /* May the device file be opened? If not, report it. */

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The report of `--board`: its lines, in order of importance, and their remedies. */
+#include <assert.h>
 #include <stdarg.h>
 #include <string.h>
 
 #include "src/ground/board/report.h"
 #include "src/ground/text/printable.h"
+#include "src/ground/text/shell.h"
 
 static void clean_text(char *text)
 {
@@ -39,6 +41,36 @@ void report_remedy(struct board_report *report, const char *format, ...)
 	va_start(args, format);
 	vsnprintf(line->remedy, sizeof(line->remedy), format, args);
 	va_end(args);
+	clean_text(line->remedy);
+}
+
+void report_command(struct board_report *report, const char *format, ...)
+{
+	struct board_line *line = &report->line[report->count - 1];
+	size_t used = 0, size = sizeof(line->remedy);
+	char text[SHELL_WORD];
+	va_list args;
+
+	if (report->full)
+		return;
+	va_start(args, format);
+	while (*format && used < size) {
+		size_t plain = strcspn(format, "%");
+		char *at = line->remedy + used;
+
+		assert(plain || strchr("sdu", format[1]));
+		if (plain)
+			used += (size_t)snprintf(at, size - used, "%.*s", (int)plain, format);
+		else if (format[1] == 's')
+			used += (size_t)snprintf(at, size - used, "%s",
+			                         shell_word(va_arg(args, const char *), text));
+		else
+			used += (size_t)snprintf(at, size - used, "%d", va_arg(args, int));
+		format += plain ? plain : 2;
+	}
+	va_end(args);
+	if (used >= size)
+		line->remedy[0] = '\0';
 	clean_text(line->remedy);
 }
 

@@ -17,6 +17,7 @@
 #include "hal/base/time.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
+#include "src/ground/board/report.h"
 #include "src/tool/owsctl/machine/command.h"
 #include "src/tool/owsctl/machine/doctor.h"
 #include "src/tool/owsctl/machine/faces.h"
@@ -161,6 +162,23 @@ static void test_a_wrong_file_is_reported_once_and_not_by_each_service(void)
 	holds(out, "OWS.rio:3:");
 	TEST_ASSERT_NULL_MESSAGE(strstr(out, "fails"), out);
 	TEST_ASSERT_NULL_MESSAGE(strstr(out, "\n2. "), out);
+}
+
+/* A program writes its name and status into /run itself, and anybody names the file of an owsd. */
+static void test_a_command_to_paste_has_the_words_that_it_names_and_no_others(void)
+{
+	struct board_report found = {0};
+	char name[sizeof(found.line->remedy) / 4];
+
+	report_add(&found, BOARD_MISSING, "x");
+	report_command(&found, "cp new.rio %s; kill %d    # 100 of %s", "/home/o'a/$(id) 1.rio", -7,
+	               "OWS");
+	TEST_ASSERT_EQUAL_STRING("cp new.rio '/home/o'\\''a/$(id) 1.rio'; kill -7    # 100 of OWS",
+	                         found.line->remedy);
+	memset(name, '\'', sizeof(name) - 1);
+	name[sizeof(name) - 1] = '\0';
+	report_command(&found, "rm %s", name);
+	TEST_ASSERT_EQUAL_STRING("", found.line->remedy);
 }
 
 static void test_only_commands_that_change_no_plant_are_safe(void)
@@ -346,6 +364,7 @@ int main(void)
 	RUN_TEST(test_the_first_line_is_the_remedy_of_each_recorded_machine);
 	RUN_TEST(test_json_has_the_same_with_what_is_safe);
 	RUN_TEST(test_a_wrong_file_is_reported_once_and_not_by_each_service);
+	RUN_TEST(test_a_command_to_paste_has_the_words_that_it_names_and_no_others);
 	RUN_TEST(test_only_commands_that_change_no_plant_are_safe);
 	RUN_TEST(test_words_of_a_program_are_never_a_command_of_this_one);
 	RUN_TEST(test_the_clock_is_set_by_who_may_and_is_left_to_who_decides);

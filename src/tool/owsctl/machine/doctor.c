@@ -119,9 +119,9 @@ static void print_text(const struct board_line *line, unsigned kind, unsigned *n
 	bool todo = kinds[kind].kind == BOARD_MISSING;
 
 	if (todo)
-		printf("%u. %s\n", ++*number, line->remedy);
+		printf("%u. %s\n", ++*number, *line->remedy ? line->remedy : line->text);
 	/* a remedy may say it all */
-	if (!todo || strcmp(line->text, line->remedy) != 0)
+	if (!todo || (*line->remedy && strcmp(line->text, line->remedy) != 0))
 		printf("%s%s\n", kinds[kind].begin, line->text);
 	if (!todo && *line->remedy)
 		printf("    %s\n", line->remedy);

@@ -22,6 +22,8 @@
 
 #define ROOM_KB 1024 /* the image of 2 000 signals, or some minutes of history */
 #define SHOWN 3      /* of the errors of a file, and of the warnings */
+#define SCAN_BEGIN "sudo systemctl stop owsd@%s; owsctl -t auto scan --rio "
+#define SCAN_END ">new.rio && sudo cp new.rio %s; sudo systemctl start owsd@%s"
 
 void check_disk(struct doctor *d)
 {
@@ -42,8 +44,8 @@ void check_disk(struct doctor *d)
 		if (room >= ROOM_KB)
 			continue;
 		report_add(&d->found, BOARD_MISSING, "%s is full: %llu kB are free", at, room);
-		report_remedy(&d->found, "make room on %s: sudo du -xah %s | sort -h | tail -20",
-		              at, at);
+		report_command(&d->found, "make room on %s: sudo du -xah %s | sort -h | tail -20",
+		               at, at);
 	}
 }
 
@@ -77,11 +79,11 @@ static void take_message(void *ctx, bool is_error, const char *message)
  */
 static void advise_scan(struct doctor *d, bool there)
 {
-	report_remedy(&d->found,
-	              "sudo systemctl stop owsd@%s; owsctl -t auto scan --rio %s%s%s>new.rio && "
-	              "sudo cp new.rio %s; sudo systemctl start owsd@%s",
-	              d->instance, there ? "--merge " : "", there ? d->file : "", there ? " " : "",
-	              d->file, d->instance);
+	if (there)
+		report_command(&d->found, SCAN_BEGIN "--merge %s " SCAN_END, d->instance, d->file,
+		               d->file, d->instance);
+	else
+		report_command(&d->found, SCAN_BEGIN SCAN_END, d->instance, d->file, d->instance);
 }
 
 void check_configuration(struct doctor *d)
@@ -241,10 +243,10 @@ static void check_person(struct doctor *d)
 		return;
 	report_add(&d->found, BOARD_MISSING, "%s may not look at the signals%s", user->pw_name,
 	           member ? ": this login is older than the group" : "");
-	report_remedy(&d->found,
-	              member ? "log in again, as %s"
-	                     : "sudo adduser %s owsd    # then log in again",
-	              user->pw_name);
+	report_command(&d->found,
+	               member ? "log in again, as %s"
+	                      : "sudo adduser %s owsd    # then log in again",
+	               user->pw_name);
 }
 
 void check_rights(struct doctor *d)

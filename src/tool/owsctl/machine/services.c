@@ -38,7 +38,7 @@ static void report_failure(struct doctor *d, const struct unit *unit)
 	if (*words)
 		report_remedy(&d->found, SEEN_SAYS, unit->id, words);
 	else
-		report_remedy(&d->found, "sudo journalctl -u %s -n 20", unit->id);
+		report_command(&d->found, "sudo journalctl -u %s -n 20", unit->id);
 }
 
 void check_services(struct doctor *d)
@@ -54,11 +54,11 @@ void check_services(struct doctor *d)
 		} else if (!strcmp(unit->active, "inactive") && unit_is_enabled(d, unit->id)) {
 			report_add(&d->found, BOARD_MISSING, "%s is enabled, and does not run",
 			           unit->id);
-			report_remedy(&d->found, "sudo systemctl start %s", unit->id);
+			report_command(&d->found, "sudo systemctl start %s", unit->id);
 		} else if (own && unit_is_active(unit) && !unit_is_enabled(d, unit->id)) {
 			report_add(&d->found, BOARD_NOTE, "%s does not start with the machine",
 			           unit->id);
-			report_remedy(&d->found, "sudo systemctl enable %s", unit->id);
+			report_command(&d->found, "sudo systemctl enable %s", unit->id);
 		}
 	}
 }
@@ -85,7 +85,7 @@ static void check_twins(struct doctor *d)
 	report_add(&d->found, BOARD_MISSING,
 	           "two owsd of the name %s run: in %s (process %d) and in %s (%d)", d->instance,
 	           paths[0], pid[0], paths[1], pid[1]);
-	report_remedy(&d->found, "kill %d    # or start it with another name, as -n TEST", pid[0]);
+	report_command(&d->found, "kill %d    # or start it with another name, as -n TEST", pid[0]);
 }
 
 static void check_refused(struct doctor *d)
@@ -99,10 +99,10 @@ static void check_refused(struct doctor *d)
 	report_add(&d->found, BOARD_MISSING,
 	           "owsd goes on with what it loaded before: a reload was refused %s ago: %s",
 	           when_span(d->now_ns - refused.time_ns, span), refused.text);
-	report_remedy(&d->found,
-	              refused.level == 4 ? "sudo systemctl restart owsd@%s"
-	                                 : "sudo owsctl -n %s reload",
-	              d->instance);
+	report_command(&d->found,
+	               refused.level == 4 ? "sudo systemctl restart owsd@%s"
+	                                  : "sudo owsctl -n %s reload",
+	               d->instance);
 }
 
 void check_owsd(struct doctor *d)
@@ -128,12 +128,12 @@ void check_owsd(struct doctor *d)
 	report_add(&d->found, BOARD_MISSING, "owsd %s does not run: %s", d->instance,
 	           d->err && d->err != -ENOENT ? strerror(-d->err) : "it has no heartbeat");
 	if (unit_is_active(unit))
-		report_remedy(&d->found, "sudo systemctl restart owsd@%s", d->instance);
+		report_command(&d->found, "sudo systemctl restart owsd@%s", d->instance);
 	else if (face_is_installed(d->root, &service))
-		report_remedy(&d->found, "sudo systemctl enable --now owsd@%s", d->instance);
+		report_command(&d->found, "sudo systemctl enable --now owsd@%s", d->instance);
 	else
-		report_remedy(&d->found, "owsd -n %s -c %s    # or install its service",
-		              d->instance, d->file);
+		report_command(&d->found, "owsd -n %s -c %s    # or install its service",
+		               d->instance, d->file);
 }
 
 /* --- The programs beside it ------------------------------------------------------------------ */
@@ -160,8 +160,8 @@ static void check_report(struct doctor *d, const struct faces_one *face)
 			return;
 		report_add(&d->found, BOARD_MISSING, "%s has been silent for %s", face->program,
 		           when_span(d->now_ns - face->beat_ns, span));
-		report_remedy(&d->found, "sudo systemctl restart %s@%s", face->program,
-		              d->instance);
+		report_command(&d->found, "sudo systemctl restart %s@%s", face->program,
+		               d->instance);
 	} else if (*face->refused && !d->errors) {
 		report_add(&d->found, BOARD_MISSING, "%s refuses its file: %s", face->program,
 		           face->refused);
@@ -173,7 +173,8 @@ static void check_report(struct doctor *d, const struct faces_one *face)
 	} else if (is_older(d, face) && !d->errors) {
 		report_add(&d->found, BOARD_MISSING,
 		           "%s has not read the file since it was changed", face->program);
-		report_remedy(&d->found, "sudo systemctl reload %s@%s", face->program, d->instance);
+		report_command(&d->found, "sudo systemctl reload %s@%s", face->program,
+		               d->instance);
 	}
 }
 
@@ -191,9 +192,9 @@ static void check_face(struct doctor *d, const struct face_row *row)
 		report_add(&d->found, BOARD_NOTE, "%s has a block for %s, which is %s", d->file,
 		           row->program, there ? "not switched on" : "not installed");
 		if (there)
-			report_remedy(&d->found, "sudo owsctl -n %s enable %s", d->instance, word);
+			report_command(&d->found, "sudo owsctl -n %s enable %s", d->instance, word);
 		else
-			report_remedy(&d->found, "sudo apt install %s", row->package);
+			report_command(&d->found, "sudo apt install %s", row->package);
 		return;
 	}
 	for (unsigned i = 0; i < FACE_RIGHTS; i++) {
@@ -205,7 +206,7 @@ static void check_face(struct doctor *d, const struct face_row *row)
 		report_add(&d->found, BOARD_MISSING,
 		           "%s is on for %s, which is not in the group %s", right->key,
 		           row->program, right->group);
-		report_remedy(&d->found, "sudo owsctl -n %s enable %s", d->instance, word);
+		report_command(&d->found, "sudo owsctl -n %s enable %s", d->instance, word);
 	}
 }
 

@@ -21,6 +21,7 @@
 #include "src/ground/board/look.h"
 #include "src/ground/board/report.h"
 #include "src/ground/signal/value.h"
+#include "src/ground/text/shell.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/open.h"
 #include "src/tool/owsctl/scan/scan_item.h"
@@ -176,7 +177,7 @@ static const char *alarms(const struct scan_device *device)
 static void show_values(const struct scan_device *device, char *out, size_t size)
 {
 	struct scan_property property;
-	char words[ERROR_WORDS];
+	char words[ERROR_WORDS], word[SHELL_WORD];
 	size_t used = 0;
 
 	out[0] = '\0';
@@ -195,7 +196,7 @@ static void show_values(const struct scan_device *device, char *out, size_t size
 		used += n > 0 ? (size_t)n : 0;
 	}
 	if (!used)
-		snprintf(out, size, "(owsctl dir %s)", device->path);
+		snprintf(out, size, "(owsctl dir %s)", shell_word(device->path, word));
 }
 
 static void scan_print_table(const struct scan *scan)

@@ -13,6 +13,7 @@
 #include "src/config/read/load.h"
 #include "src/ground/signal/error.h"
 #include "src/ground/signal/value.h"
+#include "src/ground/text/shell.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/scan/scan_item.h"
 #include "src/tool/scan/left_out.h"
@@ -235,11 +236,11 @@ bool scan_make_items(struct scan_names *names, const struct scan_device *device,
 {
 	unsigned before = names->count;
 	struct scan_property property;
-	char dir[256], left_out[512];
+	char dir[800], left_out[512], target[SHELL_WORD], path[SHELL_WORD];
 
 	snprintf(dir, sizeof(dir), "owsctl %s%s%sdir %s lists what it has",
-	         choice.target ? "-t " : "", choice.target ? choice.target : "",
-	         choice.target ? " " : "", device->path);
+	         choice.target ? "-t " : "", choice.target ? shell_word(choice.target, target) : "",
+	         choice.target ? " " : "", shell_word(device->path, path));
 	for (unsigned i = 0; scan_property(device, i, &property); i++)
 		if (gets_item(names, device, &property, &device->value[i], choice) &&
 		    !(choice.bits && make_bits(names, device, &property, device->value[i].text)))
