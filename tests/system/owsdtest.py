@@ -48,12 +48,17 @@ _serial = itertools.count(1)
 _ports = []  # names that keep the ports for us, until we end
 
 
+def folder():
+    """A folder for all cases of this program; it is removed at the end of the program."""
+    path = tempfile.mkdtemp(prefix="cases-")
+    atexit.register(shutil.rmtree, path, ignore_errors=True)
+    return pathlib.Path(path)
+
+
 # What is started here has its files in a place of the test's own, not where an owsd of this machine
 # has them; tests/system/run gives one too
 if "OWS_DIR" not in os.environ:
-    _home = tempfile.mkdtemp(prefix="owsd-place-")
-    os.environ["OWS_DIR"] = f"{_home}/owsd"
-    atexit.register(shutil.rmtree, _home, ignore_errors=True)
+    os.environ["OWS_DIR"] = str(folder() / "owsd")
 
 
 def place():

@@ -50,6 +50,13 @@ def test_a_test_that_takes_too_long_is_ended_and_failed(scene):
     assert "took more than 1 s" in out and status == 1
 
 
+def test_a_file_left_in_the_current_folder_is_named(scene):
+    """A person starts a Python test in the source."""
+    text = "open('litter', 'w').close()\nprint('1 passed, 0 failed')\n"
+    out, status = run_script(scene, "test_litter.py", text)
+    assert "left in the current folder: litter" in out and status == 1, out
+
+
 def test_a_process_left_in_another_session_is_found_and_ended(scene):
     pid_file = scene.path / "pid"
     out, status = run_script(scene, "test_left.sh",

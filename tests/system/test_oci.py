@@ -48,7 +48,7 @@ def layout():
         owsdtest.skip("mmdebstrap is not installed (sh board/install-deps oci)")
     found = architectures()
     if not LAYOUT:
-        LAYOUT.append(pathlib.Path.cwd() / "oci")
+        LAYOUT.append(owsdtest.folder() / "oci")
         run(sys.executable, SOURCE / "board/make-oci", "--debs", DEBS, "--out", LAYOUT[0], *found)
     return LAYOUT[0]
 

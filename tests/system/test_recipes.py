@@ -244,7 +244,7 @@ def build_for_musl(scene):
         return BUILT[0]
     if not shutil.which("musl-gcc"):
         owsdtest.skip("musl-gcc is not installed")
-    recipe, top = recipes(scene) / "alpine", pathlib.Path.cwd() / "musl"
+    recipe, top = recipes(scene) / "alpine", owsdtest.folder()
     source_tree(top / "source")
     left_out = {row[2] for row in FACES if row[1] != "-" and row[0] != "owsd-web"} | {"libows-history"}
     around = ABUILD.format(top=top, recipe=recipe, without="|".join(sorted(left_out)))
