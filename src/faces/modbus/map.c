@@ -8,6 +8,7 @@
 
 #include "hal/base/file.h"
 #include "src/faces/modbus/map.h"
+#include "src/ground/signal/hash.h"
 #include "src/history/file/place.h"
 
 #define PROGRAM "owsd-modbus"
@@ -15,12 +16,25 @@
 #define FILE_MOST (LAYOUT_PLACES * 1024)
 #define IDENTITY_MOST 500
 
+#define HASHES (sizeof(((struct map *)0)->by_hash) / sizeof(uint16_t))
+
+/* Where the place of the identity stands in by_hash, or is to stand. */
+static size_t find(const struct map *map, const char *identity)
+{
+	size_t at = hash_text(HASH_BEGIN, identity, strlen(identity)) % HASHES;
+
+	while (map->by_hash[at] && strcmp(map->places[map->by_hash[at]].identity, identity) != 0)
+		at = (at + 1) % HASHES;
+	return at;
+}
+
 static int map_put(struct map *map, unsigned place, const char *identity)
 {
 	char *copy = strdup(identity);
 
 	if (!copy)
 		return -ENOMEM;
+	map->by_hash[find(map, identity)] = (uint16_t)place;
 	map->places[place].identity = copy;
 	map->places[place].signal = MAP_NO_SIGNAL;
 	if (place > map->last)
@@ -30,10 +44,7 @@ static int map_put(struct map *map, unsigned place, const char *identity)
 
 unsigned map_known(const struct map *map, const char *identity)
 {
-	for (unsigned i = 1; i <= map->last; i++)
-		if (map->places[i].identity && !strcmp(map->places[i].identity, identity))
-			return i;
-	return 0;
+	return map->by_hash[find(map, identity)];
 }
 
 int map_take(struct map *map, char *line)

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "src/faces/modbus/layout.h"
 
@@ -18,6 +19,8 @@ struct map {
 		int signal;     /* by the index of ows_info(), or MAP_NO_SIGNAL */
 	} places[LAYOUT_PLACES];
 	unsigned last; /* the highest place that is not free; 0: none */
+	/* The places by the hashes of their identities, at the next that is free; 0: none */
+	uint16_t by_hash[2 * LAYOUT_PLACES];
 };
 
 /*

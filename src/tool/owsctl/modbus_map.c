@@ -47,16 +47,32 @@ static void cells_of(const struct map *map, struct ows *h, unsigned place,
 	cells[MODBUS_CELL_identity] = map->places[place].identity;
 }
 
-/* Is there another signal of that name, but for case? */
-static bool has_twin(struct ows *h, const char *name)
+static int by_name(const void *a, const void *b)
 {
-	struct ows_info info;
-	bool found = false;
+	return strcasecmp(*(const char *const *)a, *(const char *const *)b);
+}
 
-	for (int i = 0; *name && !found && i < ows_count(h); i++)
-		found = !ows_info(h, i, &info) && !strcasecmp(info.name, name) &&
-		        strcmp(info.name, name) != 0;
-	return found;
+/* The names of all signals by by_name(); for free(). NULL: no memory. */
+static const char **sort_names(struct ows *h)
+{
+	int count = ows_count(h);
+	const char **names = calloc((size_t)count + 1, sizeof(*names));
+	struct ows_info info;
+
+	for (int i = 0; names && i < count; i++)
+		names[i] = ows_info(h, i, &info) ? "" : info.name;
+	if (names)
+		qsort(names, (size_t)count, sizeof(*names), by_name);
+	return names;
+}
+
+/* Is there another signal of that name, but for case? */
+static bool has_twin(const char **names, int count, const char *name)
+{
+	const char **at = bsearch(&name, names, (size_t)count, sizeof(*names), by_name);
+
+	return at && ((at > names && !by_name(at - 1, at)) ||
+	              (at + 1 < names + count && !by_name(at + 1, at)));
 }
 
 static void print_json_row(struct json *json, const char *const *cells)
@@ -74,7 +90,7 @@ static void print_json_row(struct json *json, const char *const *cells)
 static void print_map(const struct map *map, struct ows *h, struct modbus_file *file,
                       const struct modbus_form *form, bool as_json)
 {
-	const char *cells[MODBUS_CELL_COUNT];
+	const char *cells[MODBUS_CELL_COUNT], **names = form ? sort_names(h) : NULL;
 	char numbers[MODBUS_CELL_TEXTS][8];
 	struct table table;
 	struct json json;
@@ -87,7 +103,7 @@ static void print_map(const struct map *map, struct ows *h, struct modbus_file *
 		if (!map->places[place].identity)
 			continue;
 		cells_of(map, h, place, numbers, cells);
-		file->twin = form && has_twin(h, cells[MODBUS_CELL_name]);
+		file->twin = names && has_twin(names, ows_count(h), cells[MODBUS_CELL_name]);
 		if (form)
 			modbus_form_row(file, form, cells);
 		else if (as_json)
@@ -101,6 +117,7 @@ static void print_map(const struct map *map, struct ows *h, struct modbus_file *
 	else if (!as_json)
 		table_print(&table, true);
 	table_free(&table);
+	free(names);
 }
 
 /* absent: what helps if it is not there; NULL: it need not be. */
