@@ -13,6 +13,7 @@ from tree import Skip, parallel
 
 FORMAT_VERSION = "14"  # another one breaks lines elsewhere
 WIDTH = 100
+SCRIPT_WIDTH = 120  # nothing breaks its lines but a person
 # Files that have no place for a licence, or one of others
 UNSIGNED = (".json", ".md", ".rio", ".svg", ".png", ".tsv", ".sim", ".webmanifest", ".txt", ".xml")
 SIGNED = (".c", ".h", ".cpp", ".py", ".mk", ".js", ".css", ".html", ".sh", ".service", ".socket")
@@ -61,6 +62,13 @@ def check_no_comment_in_c_is_wider_than_100_columns(tree):
                 for n in range(first, last + 1):
                     if len(lines[n]) > WIDTH:
                         yield file, n + 1, f"{len(lines[n])} columns; wrap the comment at {WIDTH}"
+
+
+def check_no_line_of_a_script_is_wider_than_120_columns(tree):
+    for file in tree.ending(".js"):
+        for n, line in enumerate(tree.text(file).expandtabs(8).split("\n"), 1):
+            if len(line) > SCRIPT_WIDTH:
+                yield file, n, f"{len(line)} columns; wrap the line at {SCRIPT_WIDTH}"
 
 
 # Files above 500 lines that are one concept

@@ -28,8 +28,10 @@ export function fillDetail(row, star) {
 	detail.age_ = el("span", {}, row.age === null ? "" : `${span(row.age)} old`);
 	detail.replaceChildren(s.description ? el("p", {}, s.description) : "",
 		...words.filter(Boolean), el("p", {class: "facts-line"},
-		...[fact("Place", placeOf(s)), fact("Modbus", s.modbus && `register ${s.modbus}`), fact("Limits", limits), text && s.type !== "bool"
-			? fact(`Since ${since}`, text) : null, s.simulated ? el("span", {}, "Simulated") : null,
+		...[fact("Place", placeOf(s)), fact("Modbus", s.modbus && `register ${s.modbus}`),
+			fact("Limits", limits),
+			text && s.type !== "bool" ? fact(`Since ${since}`, text) : null,
+			s.simulated ? el("span", {}, "Simulated") : null,
 		detail.age_].filter(Boolean)),
 	el("p", {class: "path"}, el("code", {}, s.path ?? "")),
 	el("div", {class: "buttons"},

@@ -71,7 +71,8 @@ function renewed() {
 	if (!$("instance").firstElementChild)
 		put($("instance"), info?.instance ?? "");
 	$("refused").hidden = !refused;
-	put($("refused"), refused ? `owsd has refused its file and goes on with what it loaded before: ${refused}` : "");
+	put($("refused"), refused
+		? `owsd has refused its file and goes on with what it loaded before: ${refused}` : "");
 	$("read-only").hidden = !info || info.writable || !signals.some((signal) => signal.output);
 	count();
 }

@@ -56,7 +56,8 @@ export class Headline {
 
 	#item({look, names, more, words}) {
 		const alarm = look.edge.startsWith("alarm") ? look.alarm : null;
-		const mark = alarm ? badge({...alarm, text: ""}) : el("span", {class: "shape", "aria-hidden": "true"}, look.shape);
+		const mark = alarm ? badge({...alarm, text: ""})
+			: el("span", {class: "shape", "aria-hidden": "true"}, look.shape);
 		const link = (name) => el("a", {href: `#live?${new URLSearchParams({signal: name})}`,
 			onclick: (event) => {
 				event.preventDefault();

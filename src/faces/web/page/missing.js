@@ -58,8 +58,8 @@ function row(id, items, free) {
 
 async function replace(old, {id, bus}, names) {
 	if (!await ask(`Replace ${old}?`, "Replace", [el("p", {}, `${id} takes its place for the `
-		+ `signals ${names}. They keep their names and settings, and their history goes on. Undo brings back what `
-		+ "was.")]))
+		+ `signals ${names}. They keep their names and settings, and their history goes on. `
+		+ "Undo brings back what was.")]))
 		return;
 	await attempt(fault, () => draft.edit({do: "replace", old, new: id, location: bus ?? ""}),
 		() => `${id} takes the place of ${old} in the draft.`);

@@ -73,8 +73,8 @@ export class Plot {
 		const rule = paint.css("--rule");
 		let tapped = -Infinity;
 		return {
-			labels: ["time", "all"], highlightCircleSize: 0, gridLineColor: rule, gridLineWidth: 1, axisTickSize: 4,
-			axisLineColor: "transparent", axisLabelFontSize: 12,
+			labels: ["time", "all"], highlightCircleSize: 0, gridLineColor: rule, gridLineWidth: 1,
+			axisTickSize: 4, axisLineColor: "transparent", axisLabelFontSize: 12,
 			plotter: (all) => this.#draw(all), drawCallback: (graph) => this.#drawn(graph),
 			axes: {x: {drawAxis: false, ticker: (from, until, width) => timeTicks(from, until, width)},
 				y: {drawGrid: !this.lanes, ticker: (from, until, height) => this.lanes ? []

@@ -78,7 +78,8 @@ export async function setKey(items, hidden) {
 	key.value = options.some((one) => one.key === last) ? last : options[0].key;
 	show();
 	if (!await ask(`Set a key of ${items.length > 1 ? `${items.length} items` : items[0].name}`, "Set",
-		[el("p", {}, `${namesOf(items)}. ${hiddenOf(items, hidden)}`), el("label", {for: "set-key"}, "Key"), key,
+		[el("p", {}, `${namesOf(items)}. ${hiddenOf(items, hidden)}`),
+			el("label", {for: "set-key"}, "Key"), key,
 			el("label", {for: "set-value"}, "Value"), field, fault, hint],
 	tried(() => control, fault, async () => {
 		put(fault, "");

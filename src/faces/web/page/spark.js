@@ -101,7 +101,8 @@ export function rangeOf(signal, now) {
 	if (signal.type === "bool") {
 		const {recent} = signal, changed = recent.length - 1 > extent.first;
 		return {since, text: changed ? recent.at(-1).old ? "" // of some minutes: hour.js
-			: `since ${clock(recent.at(-1).t).slice(0, 5)}` : now - extent.from >= LONGEST_MS ? "all hour" : ""};
+			: `since ${clock(recent.at(-1).t).slice(0, 5)}`
+			: now - extent.from >= LONGEST_MS ? "all hour" : ""};
 	}
 	const [least, most] = [extent.least, extent.most].map((v) => valueText(signal, v));
 	return {since, text: least === most ? "" : `${least} \u2013 ${most}`};

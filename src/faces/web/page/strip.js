@@ -62,8 +62,10 @@ function terminalOf(terminal, chosen) {
 		buttonOf(terminal, chosen, "screws"),
 		el("div", {class: "line"}, short ? el("strong", {class: "pill is-bad"}, shortWords)
 			: chips.length ? loadOf(terminal) : el("span", {class: "description"}, "empty"),
-		chips.length || terminal.errors ? el("span", {class: terminal.errors ? "description errors" : "description"},
-			errorsOf(terminal)) : null),
+		chips.length || terminal.errors
+			? el("span", {class: terminal.errors ? "description errors" : "description"},
+				errorsOf(terminal))
+			: null),
 		chips.length ? el("ul", {class: "nodes"}, ...chips.slice(0, CHIPS).map(node),
 			more > 0 ? el("li", {class: "description"}, `and ${more} more`) : null) : null);
 }

@@ -17,7 +17,8 @@ export class Tools {
 		this.spans = SPANS.map(([seconds, text]) => button(text, () => act.span(seconds * 1000),
 			{"data-span": seconds * 1000}));
 		this.field = el("input", {type: "text", class: "times", autocomplete: "off",
-			spellcheck: "false", "aria-describedby": "trend-told", "aria-label": "Window of time; for example: yesterday 18:00",
+			spellcheck: "false", "aria-describedby": "trend-told",
+			"aria-label": "Window of time; for example: yesterday 18:00",
 			onchange: () => this.#typed(), onfocus: () => this.field.select(),
 			onblur: () => this.draw(this.state), onkeydown: (event) => this.#key(event)});
 		this.date = el("input", {type: "datetime-local", class: "date", tabindex: -1,

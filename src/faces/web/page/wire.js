@@ -213,10 +213,11 @@ const DEVICE_COLUMNS = [
 	["Share of the wire", ({id}) => percent(last.share.get(id), `Share of ${id}`),
 		({id}) => last.share.has(id)],
 ];
-const DEVICE_HINT = "Health: in the words of NAMUR NE 107. Identity: which chip it is by its behaviour. Power: parasite is from the data "
-	+ "line. Errors and retries: since owsd started; retries: owsd asked again after an error. Share: "
-	+ "the time of the wire that the device took in the last half minute; a conversion that all "
-	+ "thermometers begin together belongs to none.";
+const DEVICE_HINT = "Health: in the words of NAMUR NE 107. Identity: which chip it is by its behaviour. "
+	+ "Power: parasite is from the data line. Errors and retries: since owsd started; "
+	+ "retries: owsd asked again after an error. Share: the time of the wire "
+	+ "that the device took in the last half minute; "
+	+ "a conversion that all thermometers begin together belongs to none.";
 
 function drawDevices(terminals, chips) {
 	const words = search.value.trim().toLowerCase();
