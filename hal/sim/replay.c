@@ -19,10 +19,11 @@
 /* Stands in place of the operations of the bus, whose copy it has. */
 struct replay {
 	struct bus_ops ops; /* first */
-	void (*destroy)(struct bus *bus);
+	const struct bus_ops *inner;
 	struct bus_env env; /* with the tap */
 	const struct bus_env *host;
-	int64_t now_ns;
+	bool execs; /* exec is at work */
+	int64_t now_ns, due_ns;
 	struct trace trace;
 	char name[];
 };
@@ -30,31 +31,51 @@ struct replay {
 /*
  * --- The time of a replay ---
  *
- * It stands still but while a recorded call lasts, and in waits: what a driver measures is what it
- * measured then. It is behind the host's by what the calls cost here, which the next wait makes up.
+ * It goes on in recorded calls and in waits, until their time is over, and to the next step: that
+ * begins when it was due, or, if it is called for something else, sooner. So what a driver measures
+ * is what it measured then, however late the machine is now. What is simple waits outside its step,
+ * too: there its time is the host's.
  */
-
-#define LATE_NS (50 * NS_PER_MS)
 
 static int64_t replay_now(void *ctx)
 {
 	struct replay *replay = ctx;
-	int64_t now_ns = bus_now(replay->host);
 
-	if (now_ns - replay->now_ns > LATE_NS)
-		replay->now_ns = now_ns;
-	return replay->now_ns;
+	return replay->ops.exec && !replay->execs ? bus_now(replay->host) : replay->now_ns;
 }
 
 static int replay_wait(void *ctx, int fd, short events, int64_t until_ns)
 {
 	struct replay *replay = ctx;
 	int ready = replay->host->wait(replay->host->ctx, fd, events, until_ns);
-	int64_t now_ns = ready > 0 ? bus_now(replay->host) : until_ns;
 
-	if (ready >= 0 && now_ns > replay->now_ns)
-		replay->now_ns = now_ns;
+	if (!ready && until_ns > replay->now_ns)
+		replay->now_ns = until_ns;
 	return ready;
+}
+
+static struct replay *replay_of(struct bus *bus)
+{
+	return (struct replay *)(uintptr_t)bus->ops;
+}
+
+static int64_t replay_step(struct bus *bus, int64_t now)
+{
+	struct replay *replay = replay_of(bus);
+
+	replay->now_ns = later_ns(replay->now_ns, earlier_ns(now, replay->due_ns));
+	replay->due_ns = replay->inner->step(bus, replay->now_ns);
+	return replay->due_ns;
+}
+
+static void replay_exec(struct bus *bus, struct bus_req *req, struct bus_answer *answer)
+{
+	struct replay *replay = replay_of(bus);
+
+	replay->now_ns = bus_now(replay->host);
+	replay->execs = true;
+	replay->inner->exec(bus, req, answer);
+	replay->execs = false;
 }
 
 static void give_answer(void *ctx, const struct bus_answer *answer)
@@ -134,9 +155,9 @@ static int create_master(const char *where, const struct bus_env *env, struct li
 
 static void replay_destroy(struct bus *bus)
 {
-	struct replay *replay = (struct replay *)(uintptr_t)bus->ops;
+	struct replay *replay = replay_of(bus);
 
-	replay->destroy(bus);
+	replay->inner->destroy(bus);
 	trace_end(&replay->trace);
 	free(replay);
 }
@@ -208,6 +229,8 @@ static int replay_create(const char *where, const struct bus_env *env, struct bu
 	memcpy(replay->name, where, strlen(where) + 1);
 	err = trace_replay(&replay->trace, replay->name, why, why_size);
 	replay->host = env;
+	replay->now_ns = bus_now(env);
+	replay->due_ns = INT64_MAX;
 	replay->env = (struct bus_env){.ctx = replay,
 	                               .now = replay_now,
 	                               .wait = replay_wait,
@@ -221,9 +244,11 @@ static int replay_create(const char *where, const struct bus_env *env, struct bu
 		free(replay);
 		return err == -ENOMEM ? err : -EINVAL;
 	}
-	replay->ops = *(*bus)->ops;
-	replay->destroy = replay->ops.destroy;
+	replay->inner = (*bus)->ops;
+	replay->ops = *replay->inner;
 	replay->ops.destroy = replay_destroy;
+	replay->ops.step = replay_step;
+	replay->ops.exec = replay->ops.exec ? replay_exec : NULL;
 	replay->ops.testing = true;
 	(*bus)->ops = &replay->ops;
 	return 0;
