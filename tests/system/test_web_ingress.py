@@ -199,7 +199,8 @@ def test_at_an_address_all_but_the_proxy_are_refused_and_the_socket_is_as_before
     twice = (b"GET /api/info HTTP/1.1\r\nHost: a\r\nX-Remote-User-Name: anna\r\n"
              b"x-remote-user-name: root\r\n\r\n")
     assert status_of(page.raw(twice)) == 400
-    # and the log of one that everybody reaches says so
+    # the log says so, after a reload too, and of one that everybody reaches
+    owsdtest.logged(page.program, f"the page is at http://127.0.0.1:{page.port}/: for the proxy alone")
     assert page.program.stop() == 0
     for proxy, who in ((True, "for the proxy alone"), (False, "whoever reaches it may command")):
         if not proxy:

@@ -92,11 +92,27 @@ static int open_socket(struct web *web)
 	return err;
 }
 
+static const char *serves(const struct config_web *options)
+{
+	return options->proxy_at.bits ? ": for the proxy alone"
+	       : options->configure   ? ": whoever reaches it may configure"
+	       : options->write       ? ": whoever reaches it may command"
+	                              : ": whoever reaches it may look";
+}
+
+static void tell_address(const struct web *web, const struct listen_address *address)
+{
+	bool local = listen_is_loopback(address), proxy = web->face->config->web.proxy_at.bits;
+	char text[LISTEN_TEXT_MAX];
+
+	listen_print(address, text);
+	log_at(web->face->log, local || proxy ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
+	       "the page is at http://%s/%s", text, local && !proxy ? "" : web->serves);
+}
+
 static int open_address(struct web *web, struct listen_address address)
 {
-	const struct config_web *options = &web->face->config->web;
 	int err = doors_address(&web->doors, &address);
-	bool local = listen_is_loopback(&address), proxy = options->proxy_at.bits;
 	char text[LISTEN_TEXT_MAX];
 
 	listen_print(&address, text);
@@ -104,13 +120,7 @@ static int open_address(struct web *web, struct listen_address address)
 		log_err(web->face->log, "the page is not at http://%s/: %s%s", text, strerror(-err),
 		        listen_remedy(err));
 	else
-		log_at(web->face->log, local || proxy ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
-		       "the page is at http://%s/%s", text,
-		       proxy                ? ": for the proxy alone"
-		       : local              ? ""
-		       : options->configure ? ": whoever reaches it may configure"
-		       : options->write     ? ": whoever reaches it may command"
-		                            : ": whoever reaches it may look");
+		tell_address(web, &address);
 	return err;
 }
 
@@ -146,7 +156,19 @@ static int open_doors(struct web *web)
 		return n;
 	}
 	err = n ? 0 : open_socket(web);
+	web->serves = serves(&web->face->config->web);
 	return err ? err : open_addresses(web);
+}
+
+/* An address that stays may serve others now. */
+static void follow_rights(struct web *web)
+{
+	const char *before = web->serves;
+
+	web->serves = serves(&web->face->config->web);
+	for (unsigned i = 0; i < web->doors.count && strcmp(before, web->serves) != 0; i++)
+		if (web->doors.by_address[i] && web->doors.fds[i] >= 0)
+			tell_address(web, &web->doors.at[i]);
 }
 
 /* What Listen says now: doors of the socket and of the service manager stay, as does that of -l. */
@@ -243,6 +265,7 @@ static void follow_others(struct web *web)
 static void follow_file(struct web *web)
 {
 	web->face->config->web.configure |= edit_is_on();
+	follow_rights(web);
 	follow_addresses(web);
 	follow_others(web);
 	close_files(web);

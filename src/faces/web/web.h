@@ -58,7 +58,8 @@ struct web {
 	struct MHD_Daemon *daemon;
 	int epoll; /* of libmicrohttpd */
 	struct doors doors;
-	int files; /* the directory of the page; -1: there is none */
+	const char *serves; /* whom it serves at an address; in the log */
+	int files;          /* the directory of the page; -1: there is none */
 	struct recent recent;
 	int *ids;              /* for ows_alarm_state(), of signals that can have alarms; else -1 */
 	struct others *others; /* NULL: none are named */
