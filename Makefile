@@ -16,6 +16,7 @@
 #   make unit                     unit tests alone, with each place of each visit of a chip
 #   make system                   all system tests; TESTS=test_reload.py some
 #   make helpers                  what tests are made with, in a sentence each
+#   make rooms                    what each folder of the source is, in a sentence
 #   make lint                     the form of all files; make format mends what a program can of it
 #   make check                    all suites of tests/suites, in forty minutes; goes on where it was
 #                                 broken off. SUITES='kernel gpio' some, AGAIN=1 all of them again
@@ -262,7 +263,7 @@ $(Q)$(CC) $(ALL_CFLAGS) $(1) $(ALL_LDFLAGS) -MMD -MP -o $@ $(filter %.c %.a,$^) 
 endef
 
 # --- The rooms: each is a folder, of source and of unit tests; its main header says what it is, and
-# docs/design.md which others it may use
+# tests/lint/rooms.txt which others it may use
 SOURCES  := $(wildcard src/*/*/*.c src/*/*/*/*.c hal/*/*.c hal/*/*/*.c)
 # Of owsd-web: what must be in no other program; and what calls libmicrohttpd
 WEB_ALONE := src/faces/web/no_tls.c src/faces/web/wire.c
@@ -320,7 +321,7 @@ LIBRARY  := $(foreach l,$(LIBRARIES),$(B)/$(l).so.$(VERSION) $(B)/$(l).a $(B)/$(
 .PHONY: all unit soak system test run bench bench-page install uninstall install-service uninstall-service \
         deb repository addon test-package test-service test-fresh dist test-dist clean \
         examples unit-programs benches system-programs diagrams compare properties-page devices-page \
-        check check-all touched mutate helpers help FORCE
+        check check-all touched mutate helpers rooms help FORCE
 all: $(PROGRAMS) $(LIBRARY) $(PYTHON_MADE) $(WEBPAGE:%=$(B)/page/%) $(WEBPAGE:%=$(B)/page/%.gz) $(B)/core.a $(B)/with/libraries
 
 # Two makes may do this at once
@@ -645,6 +646,11 @@ helpers:
 	@awk 'FNR == 1 { said = 0 } !said && /^(\/\* [^S]| \* |""")/ { said = 1; \
 		gsub(/^(\/\* | \* |""")|( \*\/|""")$$/, ""); printf "%-34s %s\n", FILENAME, $$0 }' \
 		tests/unit/aid/*.h $(filter-out tests/system/test_%,$(wildcard tests/system/*.py))
+
+# --- The rooms: what the main file of each says --------------------------------------------------
+rooms:
+	@sed -n '/^\(\/\*\| \*\) Room [sh][^ ]*\/[^ ]*:/{:more;/\. *\(\*\/\)\?$$/!{N;s/\n *\**//;t more};s/^[^R]*Room //;s/ *\*\/$$//;p}' \
+		$(SOURCES) $(wildcard src/*/*/*.h hal/*/*.h hal/*/*/*.h)
 
 # --- The same properties by owserver and by owsd ----------------------------------------------
 compare: all $(SYSTEM_AIDS)

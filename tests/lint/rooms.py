@@ -2,7 +2,7 @@
 """Arrows only go down: no circle between files, no room that uses one above it, small headers; and
 what the engine, the values and the alarm machine keep out.
 
-The rooms, from the top down, and what each may use stand in docs/design.md ("Rooms").
+rooms.txt has the rooms, from the top down, and after the colon what each may use.
 """
 
 import functools
@@ -12,7 +12,7 @@ import re
 import graph
 from tree import Skip, parallel
 
-DESIGN = "docs/design.md"
+LIST = "tests/lint/rooms.txt"
 TOPS = ["src", "hal"]
 # Lists of tables of operations, and the tables in them: backends, families, simulated families. A
 # dispatcher finds in the list what stands above it; that is its purpose, so it is not counted.
@@ -25,7 +25,6 @@ MANY = {"src/public/ows.h", "src/public/ows_history.h", "src/tool/owsctl/verbs.h
 # Lists that are included where FAMILY or BACKEND is defined: no headers of their own
 PARTS = {"hal/chips/families.h", "hal/bus/schemes.h", "src/config/read/option_list.h", "src/ground/signal/words_list.h"}
 FLAGS = ["-std=c17", "-D_GNU_SOURCE", "-D_FILE_OFFSET_BITS=64", "-I.", "-Wall", "-Wextra"]
-ROOM = re.compile(r"^- `([\w/]+)`: .*?\sUses\s(.*?)\.\n(?=- |\n)", re.M | re.S)
 # What the engine and the values may have of the C library: nothing that waits, reads or writes
 PURE = {"assert.h", "errno.h", "float.h", "limits.h", "math.h", "stdbool.h", "stddef.h", "stdint.h",
         "stdio.h", "stdlib.h", "string.h", "strings.h"}
@@ -38,15 +37,11 @@ def graph_of(tree):
     return graph.Graph(tree, TOPS)
 
 
-def section(tree):
-    if DESIGN not in tree.files:
-        raise Skip(f"no {DESIGN}")
-    return tree.text(DESIGN).split("\n## Rooms\n")[1].split("\n## ")[0] + "\n"
-
-
 def allowed(tree):
     """Of each room, from the top down, the rooms that it may use."""
-    return {room: re.findall(r"`([\w/]+)`", uses) for room, uses in ROOM.findall(section(tree))}
+    if LIST not in tree.files:
+        raise Skip(f"no {LIST}")
+    return {room: uses.split() for room, uses in (row.split(":") for row in tree.text(LIST).splitlines())}
 
 
 def between_rooms(found):
@@ -67,29 +62,28 @@ def check_files_use_each_other_in_no_circle(tree):
         yield found.name(circle[0]), 1, f"a circle: {found.told(arrows, circle)}; take one arrow out"
 
 
-def check_a_room_uses_only_the_rooms_that_the_design_names_and_those_stand_below(tree):
+def check_a_room_uses_only_the_rooms_that_the_list_names_and_those_stand_below(tree):
     may, found = allowed(tree), graph_of(tree)
     order = list(may)
     taken = between_rooms(found)
     rooms = {graph.room_of(graph.unit_of(f)): f for f in found.files}
     for room in rooms.keys() - may.keys():
-        uses = ", ".join(f"`{other}`" for other in order if other in taken.get(room, {}))
-        yield rooms[room], 1, f"{DESIGN} has no room {room}; say there, above those that it uses: " \
-            f"- `{room}`: WHAT IT IS. Uses {uses or 'no other'}."
+        uses = " ".join(other for other in order if other in taken.get(room, {}))
+        yield rooms[room], 1, f"{LIST} has no room {room}; add, above those that it uses: {room}: {uses}"
     for room, used in may.items():
-        line = tree.line_of(DESIGN, f"- `{room}`: ")
+        line = tree.line_of(LIST, f"{room}:")
         if room not in rooms:
-            yield DESIGN, line, f"there is no room {room}; take it out"
+            yield LIST, line, f"there is no room {room}; take it out"
         for other in used:
             if other not in order or order.index(other) <= order.index(room):
-                yield DESIGN, line, f"{room} may use {other}, which does not stand below it; move one of them"
+                yield LIST, line, f"{room} may use {other}, which does not stand below it; move one of them"
             elif other not in taken.get(room, {}):
-                yield DESIGN, line, f"{room} does not use {other}; take that leave out"
+                yield LIST, line, f"{room} does not use {other}; take that leave out"
         for other, (here, there, why) in taken.get(room, {}).items():
             if other not in used:
                 file = found.name(here)
                 yield file, tree.line_of(file, why.removeprefix("includes ")), \
-                    f"{room} may not use {other}: {found.name(there)} ({why}); go another way, or say so in {DESIGN}"
+                    f"{room} may not use {other}: {found.name(there)} ({why}); go another way, or say so in {LIST}"
 
 
 def check_what_is_private_to_a_room_or_a_part_of_it_is_included_there_alone(tree):

@@ -12,16 +12,7 @@ from owsdtest import SOURCE
 
 MIT = "SPDX-License-Identifier: MIT"
 HEAD = f"/* {MIT} */\n/* Something. */\n"
-DESIGN = """# Design
-
-## Rooms
-
-- `src/x/a`: first things. Uses `src/x/b`.
-- `src/x/b`: second things. Uses nothing.
-- `src/daemon/engine`: the engine. Uses nothing.
-
-## More
-"""
+ROOMS = "src/x/a: src/x/b\nsrc/x/b:\nsrc/daemon/engine:\n"
 SUITES = """[some]
 rung = check
 why = it is the only one
@@ -31,7 +22,7 @@ paths = src
 tests = good
 """
 CLEAN = {
-    "docs/design.md": DESIGN,
+    "tests/lint/rooms.txt": ROOMS,
     "tests/suites": f"# {MIT}\n{SUITES}",
     "tests/system/test_good.py": f"# {MIT}\n",
     "src/x/a/a.h": f"/* {MIT} */\n/* Room src/x/a: first things. Uses src/x/b. */\n#ifndef SRC_X_A_A_H\n"
@@ -97,7 +88,7 @@ FAULTS = [
     ("src/x/a/loose.c", f'{HEAD}#include "a.h"\n', r"src/x/a/loose.c:3: a.h is no path from the top"),
     ("src/faces/mqtt/bare.c", f"{HEAD}\nint bare(void)\n{{\n\treturn 0;\n}}\n",
      r"src/faces/mqtt/bare.c:1: no unit test names a function of it, nor of 100 % of the lines of src/faces/mqtt"),
-    ("src/x/c/new.c", HEAD, r"src/x/c/new.c:1: docs/design.md has no room src/x/c"),
+    ("src/x/c/new.c", HEAD, r"src/x/c/new.c:1: tests/lint/rooms.txt has no room src/x/c"),
     ("src/daemon/engine/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/daemon/engine/talk.c:3: <sys/socket.h> waits"),
     ("src/daemon/engine/part/talk.c", f'{HEAD}#include <sys/socket.h>\n', r"src/daemon/engine/part/talk.c:3: <sys/socket.h> waits"),
     ("src/daemon/engine/say.c", f'{HEAD}\nint s(void)\n{{\n\treturn printf("x");\n}}\n', r"src/daemon/engine/say.c:6: printf\(\.\.\.\) is input or output"),
