@@ -220,7 +220,7 @@ def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
 
 
 def test_what_the_page_says_to_the_broker_does_what_it_says(scene):
-    """The commands of docs/mqtt.md, as they stand there, and their answers."""
+    """The commands of docs/mqtt.md and owsd-mqtt(8), as they stand there, and their answers."""
     page = (owsdtest.SOURCE / "docs/mqtt.md").read_text()
     house = ready(scene, ROOM, RELAY, Rename=raw("on"))
     Writer(scene, house.daemon.config, house.daemon.name)
@@ -239,7 +239,9 @@ def test_what_the_page_says_to_the_broker_does_what_it_says(scene):
         said = json.loads(run(command + " -W 40"))
         assert said == json.loads(answer) if answer.endswith("}") else said["devices"][0]["type"] == "DS18B20", (command, said)
     assert house.face.stop() == 0 and house.kept("owsd/pi7/#")
-    run(re.search("^mosquitto_sub .* --remove-retained .*$", page, re.M)[0].replace("OLDNODE", "pi7"))
+    manual = (owsdtest.SOURCE / "docs/owsd-mqtt.8").read_text().replace("\\-", "-")
+    empties = re.search("^mosquitto_sub .* --remove-retained .*$", manual, re.M)[0]
+    run(empties.replace("OLDTOPIC", "owsd").replace("OLDNODE", "pi7"))
     assert not house.kept("owsd/pi7/#"), house.kept("owsd/pi7/#")
 
 
