@@ -44,37 +44,32 @@ MASTER = "w1_bus_master1"
 
 INTRO = """# Properties, one by one
 
-owserver 3.2p4 states {all} properties of {families} families of devices in its `/structure`. Each was asked
-for twice: of the genuine owserver and of owsd, with the same simulated chip, alone on its wire.
-owserver reached the chip by a serial adapter (a DS9097 on a pseudo-terminal), owsd by its DS2482
-driver. `make properties-page` writes this page, and a test fails when it is not what it would be.
+What is another property here than with owserver, for who leaves it. owserver 3.2p4 states {all} properties of
+{families} families in its `/structure`. Each was asked for twice, of the genuine owserver (over a DS9097) and of owsd
+(over a DS2482), with the same simulated chip, alone on its wire. `make properties-page` writes this page, and a test
+compares it.
 
-- **same**: the texts are equal, byte for byte. Running clocks may differ by {clock} s, as may the bytes
-  of a page in which they are, and what a current adds up to by {volt:g} Vh or {amp:g} Ah: it begins
-  with 0, so its scale is not seen here. An array of more than {short} elements is compared in its first four, the middle and the last.
-- **differs**: at least one text is another, or one of the two has none. The reason is below.
-- **cannot be had**: owsd refuses it, and will. The reason is below.
-- **not compared**: there was no text of either, or no such part is simulated. The reason is below.
-- **write-only**: it cannot be read.
+| word | means |
+|---|---|
+| same | the texts are equal, byte for byte. Running clocks may differ by {clock} s, as may the bytes of a page in which they are, and what a current adds up to by {volt:g} Vh or {amp:g} Ah: it begins with 0, so its scale is not seen here. An array of more than {short} elements is compared in its first four, the middle and the last |
+| differs | a text is another, or one of the two has none |
+| cannot be had | owsd refuses it, and will |
+| not compared | there was no text of either, or no such part is simulated |
+| write-only | it cannot be read |
+| written same | both accepted the same values, and then read the same; of what can only be written, from what can be read beside it |
+| written differs | one of the two refused a value, or read another one then |
+| not written | owsd refuses it |
 
-{writable} of them can be written. The same values, two or more of each element that was chosen, were
-written by owserver to one chip and by owsd to another, and read back past the caches:
-
-- **written same**: both accepted the same values, and then read the same; of what can only be written,
-  from what can be read beside it.
-- **written differs**: one of the two refused a value, or read another one then. The reason is below.
-- **not written**: owsd refuses it. The reason is below.
-- What is no legal value was written too: nothing, another type, out of range, too long, behind the end. Where the
-  two differ there alone, the property counts as "written same", and the last section has it.
+{writable} of them can be written: the same values, two or more of each element that was chosen, by owserver to one
+chip and by owsd to another, and read back past the caches. What is no legal value was written too; where the two
+differ there alone, the property counts as "written same", and the last section has it.
 
 Type, access, size, array and life, as `/structure` has them, are those of owserver for {stated} of
 the {all}. The others are limits of the EDS0080 to EDS0085 and two names, see family 7E.
 
-The native links (a DS2482, `w1:netlink`, the simulator) have all of this alike, because the same code
-is above them. Target `w1` has what the kernel's
-drivers give: column "driver" counts the listed properties that a driver's attributes stand for. Of a chip
-that has no driver there, one write and one read have to do:
-see [w1.md](w1.md#what-there-is). A driver's readings were not compared here.
+All adapters that owsd drives have this alike. Target `w1` has what the kernel's drivers give: column "driver" counts
+the listed properties that a driver's attributes stand for; see [w1.md](w1.md#what-there-is). A driver's readings were
+not compared here.
 """
 
 
@@ -183,9 +178,11 @@ def by_reason(records):
 
 def section(family, chip, by, marks, missing):
     """A family: what is not the same of it, by reasons, and what a driver of the kernel's does not give."""
-    lines = [item(f"{names(found)}: {', '.join(verdicts)}" +
-                  (f" ({marks[reason]})" if reason in marks else f"; {reason}"))
-             for (reason, found), verdicts in by.items()]
+    said = {}
+    for (reason, found), verdicts in by.items():
+        said.setdefault(reason, []).append(f"{names(found)}: {', '.join(verdicts)}")
+    lines = [item("; ".join(parts) + (f" ({marks[reason]})" if reason in marks else f". {reason[:1].upper()}{reason[1:]}"))
+             for reason, parts in said.items()]
     lines += [item(f"Not of the kernel's driver: {names(missing)}")] if missing else []
     return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
 
@@ -239,7 +236,7 @@ def page():
             alike.append(f"{family} ({chip.get(family, '')})")
         else:
             table.append(row_of([family, chip.get(family, "")] + [
-                of and f"{part} of {of}" for part, of in (
+                of and f"{part}/{of}" for part, of in (
                     (count["same"], count["all"] - count["write-only"]), (count["written same"], count["writable"]),
                     (count["given"], count["given"] + count["missing"]))]))
         reasons[family] = by_reason(
@@ -247,15 +244,15 @@ def page():
             [(line.verdict if line.verdict == "not written" else f"written {line.verdict}", name, line.reason)
              for name, line in puts])
     shared = collections.Counter(reason for by in reasons.values() for reason in dict.fromkeys(r for r, _ in by))
-    common = [reason for reason, n in shared.items() if n > 2]
-    marks = {reason: chr(ord("a") + n) for n, reason in enumerate(common)}
+    common = [reason for reason, n in shared.items() if n > 1]
+    marks = {reason: chr(ord("a") + n) if n < 26 else f"a{chr(ord('a') + n - 26)}" for n, reason in enumerate(common)}
     below = [line for family in families for line in
              section(family, chip.get(family, ""), reasons[family], marks, lacks[family])]
     intro = INTRO.format(all=sums["all"], writable=len(written), families=len(families), stated=len(stated),
                          clock=compare.CLOCK_S, short=compare.SHORT,
                          volt=compare.SUMS["volthours"], amp=compare.SUMS["amphours"])
     return "\n".join([
-        "\n\n".join(p if p.startswith("#") else fill(p) for p in intro.strip().split("\n\n")), "",
+        "\n\n".join(p if p[0] in "#|" else fill(p) for p in intro.strip().split("\n\n")), "",
         "## What a user notices", "",
         fill("What no comparison shows. The reasons of each property are further [below](#family-by-family)."),
         "", *[item(f"**{of}**: {note}") for of, note in notes()], "",
@@ -267,7 +264,7 @@ def page():
         fill(f"All is the same, read and written: {', '.join(alike)}."), "",
         "## Family by family", "",
         fill("What is not read, or not written, the same, and why. A letter stands for a reason that more "
-             "than two families have. Target `w1` does not list what the driver of the kernel's does not "
+             "than one family has. Target `w1` does not list what the driver of the kernel's does not "
              "give; over `w1:netlink` it is there."), "",
         *[item(f"({mark}) {reason}") for reason, mark in marks.items()], "",
         *below,
