@@ -46,8 +46,8 @@ INTRO = """# Properties, one by one
 
 What is another property here than with owserver, for who leaves it. owserver 3.2p4 states {all} properties of
 {families} families in its `/structure`. Each was asked for twice, of the genuine owserver (over a DS9097) and of owsd
-(over a DS2482), with the same simulated chip, alone on its wire. `make properties-page` writes this page, and a test
-compares it.
+(over a DS2482), with the same simulated chip, alone on its wire.
+`make properties-page` writes this page, and a test compares it.
 
 | word | means |
 |---|---|
@@ -181,7 +181,7 @@ def section(family, chip, by, marks, missing):
     said = {}
     for (reason, found), verdicts in by.items():
         said.setdefault(reason, []).append(f"{names(found)}: {', '.join(verdicts)}")
-    lines = [item("; ".join(parts) + (f" ({marks[reason]})" if reason in marks else f". {reason[:1].upper()}{reason[1:]}"))
+    lines = [item("; ".join(parts) + (f" ({marks[reason]})" if reason in marks else f". {reason if reason.startswith('ow') else reason[:1].upper() + reason[1:]}"))
              for reason, parts in said.items()]
     lines += [item(f"Not of the kernel's driver: {names(missing)}")] if missing else []
     return [f"**{family}** ({chip})", "", *lines, ""] if lines else []
