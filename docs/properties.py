@@ -47,6 +47,7 @@ INTRO = """# Properties, one by one
 What is another property here than with owserver, for who leaves it. owserver 3.2p4 states {all} properties of
 {families} families in its `/structure`. Each was asked for twice, of the genuine owserver (over a DS9097) and of owsd
 (over a DS2482), with the same simulated chip, alone on its wire.
+
 `make properties-page` writes this page, and a test compares it.
 
 | word | means |
