@@ -7,6 +7,7 @@
 
 #include "unity.h"
 
+#include "src/config/read/load.h"
 #include "src/faces/kit/arguments.h"
 #include "tests/unit/aid/folder.h"
 
@@ -43,7 +44,7 @@ static void test_without_words_it_is_the_instance_of_the_system(void)
 {
 	TEST_ASSERT_EQUAL_INT(-1, start(&none, NULL, NULL));
 	TEST_ASSERT_EQUAL_STRING("OWS", a.instance);
-	TEST_ASSERT_EQUAL_STRING(FACE_DIR "/OWS.rio", a.file);
+	TEST_ASSERT_EQUAL_STRING(CONFIG_DIR "/OWS.rio", a.file);
 	TEST_ASSERT_EQUAL_PTR(a.default_file, a.file);
 	TEST_ASSERT_EQUAL_INT(LOG_LEVEL_NOTICE, a.level);
 	TEST_ASSERT_FALSE(a.check);
@@ -53,7 +54,7 @@ static void test_without_words_it_is_the_instance_of_the_system(void)
 static void test_the_name_of_the_instance_is_that_of_its_file(void)
 {
 	TEST_ASSERT_EQUAL_INT(-1, start(&none, "-vn", "attic"));
-	TEST_ASSERT_EQUAL_STRING(FACE_DIR "/attic.rio", a.file);
+	TEST_ASSERT_EQUAL_STRING(CONFIG_DIR "/attic.rio", a.file);
 	TEST_ASSERT_EQUAL_INT(LOG_LEVEL_NOTICE + 1, a.level);
 	TEST_ASSERT_EQUAL_INT(-1, start(&none, "--config=x.rio", "--check"));
 	TEST_ASSERT_EQUAL_STRING("x.rio", a.file);
