@@ -360,7 +360,7 @@ void doors_close(struct doors *doors)
 	/* nobody has accepted what waits there, and what was sent along */
 	for (unsigned i = 0; i < doors->count; i++)
 		if (doors->fds[i] >= 0)
-			wire_close(doors->fds[i]);
+			wire_close_listener(doors->fds[i]);
 	if (*doors->path)
 		unlink(doors->path);
 	if (doors->epoll >= 0)

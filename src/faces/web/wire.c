@@ -195,6 +195,15 @@ int wire_close(int fd)
 	return place;
 }
 
+void wire_close_listener(int fd)
+{
+	/* not hung up: that would end each copy of it */
+	struct porter_order order = {.slot = PORTER_NO_SLOT, .fds = {fd}, .count = 1};
+
+	if (porter_give(porter, PORTER_SERVED, &order))
+		close(fd);
+}
+
 static void wire_flush(void)
 {
 	while (away_count) {

@@ -31,8 +31,10 @@ ptrdiff_t wire_look(int fd, void *bytes, size_t room);
 void wire_drain(int fd, void *room, size_t size);
 /* The connection ends: returns its place. libmicrohttpd closes it when this returns. */
 int wire_leave(int fd);
-/* Close one that libmicrohttpd does not have, or a listener. Returns its place. */
+/* Close one that libmicrohttpd does not have. Returns its place. */
 int wire_close(int fd);
+/* With it goes what waits there. The service manager may have it too, and it stays open there. */
+void wire_close_listener(int fd);
 /* Give the porter what waits for it, and have it started again if it was killed. */
 void wire_run(int64_t now_ns);
 /* When wire_run() has to be called at the latest. */
