@@ -98,6 +98,49 @@ reloads() {
 	for s in $services; do does "$s takes the first file" timeout 40 systemctl reload "$s"; done
 	same 'the same processes run' "$before" "$(pids "$services")"
 }
+# switches: owsctl enable and disable do it, for each face and under the name that people have for one
+switches() {
+	for face in web mqtt influx history notify modbus; do
+		unit=$(case $face in history) echo owsd-recorder ;; *) echo "owsd-$face" ;; esac)
+		does "owsctl disable $face" owsctl disable $face
+		does "$face is off" sh -c "! systemctl -q is-active '$unit@OWS.*' && ! systemctl -q is-enabled $unit@OWS.service"
+		does "$face of another instance goes on" all_serving "$(units "$unit" | tr ' ' '\n' | grep HOUSE)"
+		does "owsctl enable $face" owsctl enable $face
+		does "$face runs" within 20 all_serving "$(units "$unit" | tr ' ' '\n' | grep "^$unit@OWS")"
+	done
+	same 'enable says where the page is' 'page: http://127.0.0.1:8080/ /run/owsd/OWS.web' "$(owsctl enable web | grep page:)"
+}
+# remedy FAULT COMMAND: it is the first thing that doctor says, and what it says mends
+remedy() {
+	same "doctor: $1" "1. sudo $2" "$(owsctl doctor | head -n 1)"
+	does "doctor: $1: the command is done" sh -c "$2"
+}
+doctors() {
+	# a file without signals would be the first thing to do
+	sed 's,^}$,  Item {\n    Name "room"\n    Path "/28.A0B1C2000001/temperature"\n    Type "double"\n    IO "input"\n  }\n},' \
+		/etc/owsd/HOUSE.rio >/etc/owsd/room.rio
+	cp /etc/owsd/room.rio /etc/owsd/OWS.rio
+	systemctl reload owsd@OWS
+	for unit in owsd-modbus@OWS.service owsd@OWS.service; do
+		systemctl stop $unit
+		remedy "$unit was stopped" "systemctl start $unit"
+		does "$unit runs" within 20 serving $unit
+	done
+	# that moves no output, while owsd may have been stopped so that none moves
+	systemctl stop owsd-modbus@OWS owsd@OWS
+	does 'doctor --fix runs' sh -c 'owsctl doctor --fix; true'
+	does 'doctor --fix has started owsd-modbus' within 20 serving owsd-modbus@OWS.service
+	does 'and not owsd' sh -c '! systemctl -q is-active owsd@OWS'
+	systemctl start owsd@OWS
+	echo 'OwsDrv { Period wrong }' >/etc/owsd/OWS.rio
+	systemctl reload owsd@OWS
+	does 'doctor: a refused reload comes first, with file and line' sh -c "owsctl doctor | head -n 3 | grep -q OWS.rio:1:"
+	mv /etc/owsd/room.rio /etc/owsd/OWS.rio
+	systemctl reload owsd@OWS
+	does 'doctor: after a good one nothing of it' sh -c '! owsctl doctor | grep -q OWS.rio:1:'
+	cp /etc/owsd/HOUSE.rio /etc/owsd/OWS.rio
+	systemctl reload owsd@OWS
+}
 # pages: what they say to the service manager and of groups can be done as it stands there
 pages() {
 	groupadd -f i2c
@@ -180,6 +223,8 @@ RIO
 	[ $failed = 0 ] || finish
 	reloads
 	secrets
+	switches
+	doctors
 
 	for p in $packages; do
 		newer ./"$p"_*.deb 8.0 next
