@@ -184,10 +184,29 @@ static void decimal_print(const struct decimal *d, char text[DIGITS_MAX + 16])
 	snprintf(p + d->count, 14, "e%d", d->count ? d->point - d->count : 0);
 }
 
+/*
+ * What sensors say is short. Its digits as a whole number and a power of ten up to 22 are exact as
+ * doubles, so that one division rounds it right, where the machine computes with no more bits.
+ */
+static double short_number(const struct decimal *d)
+{
+	double number = 0, power = 1;
+
+	for (int i = 0; i < d->count; i++)
+		number = number * 10 + (d->digits[i] - '0');
+	for (int i = d->point; i < d->count; i++)
+		power *= 10;
+	return (d->negative ? -number : number) / power;
+}
+
 static double decimal_number(enum ows_type type, const struct decimal *d)
 {
+	int fraction = d->count - d->point;
 	char text[DIGITS_MAX + 16];
 
+	if (type != OWS_FLOAT && FLT_EVAL_METHOD == 0 && d->count <= DBL_DIG && fraction >= 0 &&
+	    fraction <= 22)
+		return short_number(d);
 	decimal_print(d, text);
 	/* a float is not parsed as a double first: that would round twice */
 	return type == OWS_FLOAT ? (double)strtof(text, NULL) : strtod(text, NULL);

@@ -54,6 +54,8 @@ static void test_what_is_good_is_the_number_that_the_text_says(void)
 		TEST_ASSERT_TRUE_MESSAGE(strspn(end, " ") == strlen(end), note);
 		if (type == OWS_BOOL)
 			said = said > 0;
+		if (type == OWS_DOUBLE)
+			TEST_ASSERT_TRUE_MESSAGE(value == value_of_double(said), note);
 		if (type == OWS_FLOAT)
 			TEST_ASSERT_TRUE_MESSAGE(strtof(back, NULL) == strtof(text, NULL), note);
 		else
@@ -64,9 +66,40 @@ static void test_what_is_good_is_the_number_that_the_text_says(void)
 			TEST_ASSERT_GREATER_THAN_UINT(100, good[type]);
 }
 
+/* Short and long, so that each way of reading is taken, and the last ones before the next. */
+static void test_a_double_is_to_the_bit_what_the_c_library_reads(void)
+{
+	uint64_t state = seed;
+
+	for (int i = 0; i < 200000; i++) {
+		int digits = 1 + (int)(next_random(&state) % 19);
+		int point = (int)(next_random(&state) % (uint64_t)(digits + 1));
+		int exponent = (int)(next_random(&state) % 64) - 32;
+		char text[48];
+		int len = 0;
+		uint8_t quality;
+		int64_t value;
+
+		if (next_random(&state) % 2)
+			text[len++] = '-';
+		for (int k = 0; k < digits; k++) {
+			if (k == point)
+				text[len++] = '.';
+			text[len++] = (char)('0' + next_random(&state) % 10);
+		}
+		if (next_random(&state) % 2)
+			len += snprintf(text + len, sizeof(text) - (size_t)len, "e%d", exponent);
+		text[len] = '\0';
+		TEST_ASSERT_EQUAL_INT(
+			0, value_from_text(OWS_DOUBLE, text, (size_t)len, &value, &quality));
+		TEST_ASSERT_TRUE_MESSAGE(value == value_of_double(strtod(text, NULL)), text);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_what_is_good_is_the_number_that_the_text_says);
+	RUN_TEST(test_a_double_is_to_the_bit_what_the_c_library_reads);
 	return UNITY_END();
 }

@@ -81,6 +81,8 @@ static void test_a_decimal_point_is_read_and_a_comma_is_refused(void)
 
 	TEST_ASSERT_EQUAL_INT(0, value_parse(OWS_DOUBLE, "21.25", &value));
 	TEST_ASSERT_EQUAL_DOUBLE(21.25, value_number(OWS_DOUBLE, value));
+	TEST_ASSERT_EQUAL_INT(0, value_parse(OWS_DOUBLE, "0.30000000000000004", &value));
+	TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.2, value_number(OWS_DOUBLE, value));
 	TEST_ASSERT_EQUAL_INT(0, value_from_text(OWS_FLOAT, " -0.5", 5, &value, &quality));
 	TEST_ASSERT_EQUAL_DOUBLE(-0.5, value_number(OWS_FLOAT, value));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, value_parse(OWS_DOUBLE, "21,25", &value));
