@@ -53,35 +53,40 @@ struct config_spot {
  * too where it is not given, or does nothing.
  */
 struct config_item {
+	/* What each reading asks for stands together: a large table is larger than the cache. */
+	const char *path; /* normalised: leading "/", without "/uncached" and "/alarm" */
+	enum ows_type type;
+	uint32_t per_factor;
+	bool output;
+	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
+	bool fresh;              /* Uncached, by flag or by path */
+	bool has_por;            /* its device has a power-on flag, which is read too */
+	bool restores;           /* and written again if it reads otherwise */
+	bool alarm;
+	int64_t read_back_ns;   /* outputs: how often it is read again; 0: never; -1: not given */
+	int64_t stale_after_ns; /* 0: no limit */
+	double filter_s, deadband, max_step; /* 0: none */
+	struct scale scale;
+	struct config_limits limits;
+
 	const char *name;
-	const char *path;          /* normalised: leading "/", without "/uncached" and "/alarm" */
 	const char *identity;      /* what history and faces know the signal by; each has another */
 	const char *identity_text; /* as written; NULL: identity is made of the path */
 	const char *device;        /* the ROM id in path; NULL: an alias, or no device */
 	const char *family;        /* what the chip is called, by its path; NULL: not known */
-	enum ows_type type;
-	bool output;
-	bool readable, writable; /* start values of _ReadEnable and _WriteEnable */
-	bool fresh;              /* Uncached, by flag or by path */
 	bool has_init, has_safe, has_safe_delay;
-	const char *start;    /* "init" or "last" */
-	bool starts_last;     /* outputs only */
-	bool confirm;         /* pages ask a person once more before a set */
-	int64_t read_back_ns; /* outputs: how often it is read again; 0: never; -1: not given */
-	bool has_por;         /* its device has a power-on flag, which is read too */
-	bool restores;        /* and written again if it reads otherwise */
+	const char *start; /* "init" or "last" */
+	bool starts_last;  /* outputs only */
+	bool confirm;      /* pages ask a person once more before a set */
 	int64_t safe_delay_ns;
 	int64_t init_value, safe_value;    /* numbers, as in src/ground/signal/value.h */
 	const char *init_text, *safe_text; /* as written; for strings the value itself */
-	uint32_t per_factor;
-	int64_t stale_after_ns; /* 0: no limit */
-	bool alarm;
 	/* NULL: not defined, "": empty; Table 3.1 tells the two apart */
 	const char *latch_alarm, *por_alarm, *set_alarm, *reset_latch;
 	bool wrong;       /* has an error: so has the configuration */
 	bool latch_stays; /* nothing of the item clears its latch */
 	bool whole;       /* its property takes whole numbers only */
-	struct config_limits limits;
+	bool converted;   /* scale is that from the unit of the chip to this one */
 	/* of engineering values; NULL: not given. An empty unit is given too */
 	const char *unit, *description, *group;
 	const char *calibrated; /* "2026-11-22" */
@@ -89,10 +94,7 @@ struct config_item {
 	const char *points;     /* as written */
 	unsigned decimals;
 	bool has_decimals;
-	struct scale scale;
-	bool converted; /* scale is that from the unit of the chip to this one */
-	double filter_s, deadband, max_step; /* 0: none */
-	const char *record_text;             /* as written; NULL: as the Recorder block says */
+	const char *record_text; /* as written; NULL: as the Recorder block says */
 	struct config_record record;
 	const char *device_class; /* "light", "door"; NULL: not given */
 	int line;                 /* of Item */
