@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Finds the programs that have an adapter open beside owsd. */
 #include <dirent.h>
+#include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,4 +107,35 @@ unsigned rivals_find(const char *proc, const char *device, char *text, size_t si
 	if (open > named)
 		snprintf(text + len, size - len, " and %u more", open - named);
 	return open;
+}
+
+int rivals_refused(int err, const struct rivals_device *device, int holder, char *why, size_t size)
+{
+	char who[RIVALS_TEXT];
+
+	switch (err) {
+	case -ENOENT:
+	case -ENXIO:
+	case -ENODEV:
+		snprintf(why, size, "no %s: %s", device->name, device->missing);
+		return -ENODEV;
+	case -EACCES:
+	case -EPERM:
+		snprintf(why, size,
+		         "no permission for %s: the user has to be in the group that owns it (%s)",
+		         device->name, device->group);
+		return -EACCES;
+	case -EADDRINUSE:
+		rivals_name(RIVALS_PROC, holder, who, sizeof(who));
+		break;
+	case -EBUSY:
+		if (!rivals_find(RIVALS_PROC, device->path, who, sizeof(who)))
+			snprintf(who, sizeof(who), "another program");
+		break;
+	default:
+		snprintf(why, size, "%s: %s", device->name, strerror(-err));
+		return err;
+	}
+	snprintf(why, size, "%s is in use by %s", device->name, who);
+	return -EBUSY;
 }

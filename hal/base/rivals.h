@@ -19,3 +19,15 @@ void rivals_name(const char *proc, int pid, char *text, size_t size);
  * and stats files of proc alone.
  */
 unsigned rivals_find(const char *proc, const char *device, char *text, size_t size);
+
+/* A device file as messages about it have it. */
+struct rivals_device {
+	const char *name, *path;
+	const char *missing; /* what to do where it is not there */
+	const char *group;   /* that owns it */
+};
+/*
+ * Write why it cannot be opened, and what to do about it. holder: of chip_lock(). Returns the
+ * error, one of each kind: -ENODEV, -EACCES, -EBUSY.
+ */
+int rivals_refused(int err, const struct rivals_device *device, int holder, char *why, size_t size);

@@ -30,41 +30,19 @@
 static int open_adapter(void *ctx, const struct bus_env *env, struct i2c_adapter **adapter,
                         char *why, size_t why_size)
 {
-	const char *path = ctx;
-	int err = i2c_dev_open(path, adapter);
+	const struct rivals_device device = {
+		ctx, ctx,
+		"switch I2C on (Raspberry Pi: dtparam=i2c_arm=on), load the module i2c-dev", "i2c"};
+	int err = i2c_dev_open(ctx, adapter);
 
 	(void)env;
-	switch (err) {
-	case 0:
-		break;
-	case -EACCES:
-	case -EPERM:
-		snprintf(why, why_size,
-		         "no permission for %s: the user has to be in the group "
-		         "that owns it (i2c)",
-		         path);
-		err = -EACCES;
-		break;
-	case -ENOENT:
-	case -ENXIO:
-	case -ENODEV:
-		snprintf(why, why_size,
-		         "no %s: switch I2C on (Raspberry Pi: dtparam=i2c_arm=on), "
-		         "load the module i2c-dev",
-		         path);
-		err = -ENODEV;
-		break;
-	case -EOPNOTSUPP:
+	if (err == -EOPNOTSUPP)
 		snprintf(why, why_size, "this owsd was built without libi2c and cannot open %s",
-		         path);
-		break;
-	case -ENOTTY:
-		snprintf(why, why_size, "%s is no I2C adapter", path);
-		break;
-	default:
-		snprintf(why, why_size, "%s: %s", path, strerror(-err));
-		break;
-	}
+		         device.name);
+	else if (err == -ENOTTY)
+		snprintf(why, why_size, "%s is no I2C adapter", device.name);
+	else if (err)
+		err = rivals_refused(err, &device, 0, why, why_size);
 	return err;
 }
 

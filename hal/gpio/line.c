@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/base/rivals.h"
 #include "hal/gpio/line.h"
 
 #define CONSUMER "owsd"
@@ -17,32 +18,15 @@ const struct gpio_api *gpio_substitute;
 
 static int open_path(const char *path, struct gpio_chip **chip, char *why, size_t why_size)
 {
+	const struct rivals_device device = {path, path, "gpiodetect lists the chips there are",
+	                                     "gpio"};
 	int err = gpio_api()->open(path, chip);
 
-	switch (err) {
-	case 0:
-		break;
-	case -EACCES:
-	case -EPERM:
-		snprintf(why, why_size,
-		         "no permission for %s: the user has to be in the group "
-		         "that owns it (gpio)",
-		         path);
-		return -EACCES;
-	case -ENOENT:
-	case -ENXIO:
-	case -ENODEV:
-		snprintf(why, why_size, "no %s: gpiodetect lists the chips there are", path);
-		return -ENODEV;
-	case -ENOTTY:
-	case -EINVAL:
+	if (err == -ENOTTY || err == -EINVAL) {
 		snprintf(why, why_size, "%s is not a GPIO chip: gpiodetect lists them", path);
 		return -ENOTTY;
-	default:
-		snprintf(why, why_size, "%s: %s", path, strerror(-err));
-		break;
 	}
-	return err;
+	return err ? rivals_refused(err, &device, 0, why, why_size) : 0;
 }
 
 /* Open a chip by its label; looks at all chips. */

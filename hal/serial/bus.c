@@ -27,11 +27,6 @@ static int create(const struct link_master_ops *ops, const struct serial_kind *k
 	return err ? err : serial_create(ops, kind, env, &source, master);
 }
 
-#define SERIAL_MASTER_SLOTS \
-	.open = serial_open, .close = serial_close, .visible = serial_visible, \
-	.trouble = serial_trouble, .channels = serial_channels, .channel = serial_channel, \
-	.cost = serial_master_cost, .destroy = serial_destroy
-
 static const struct link_master_ops serial_master, uart_master;
 
 static int create_serial(const char *where, const struct bus_env *env, struct link_master **master,

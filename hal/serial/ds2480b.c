@@ -50,16 +50,23 @@ struct stream {
 	size_t out_n, in_n; /* in_n: how many answers there will be */
 };
 
+/* Of a pulse, in command mode. */
+static void put_end(struct serial_master *master, struct stream *stream)
+{
+	if (master->adapter.strong) {
+		stream->out[stream->out_n++] = END_PULSE;
+		stream->in_n++;
+	}
+	master->adapter.strong = false;
+}
+
 static void put_command(struct serial_master *master, struct stream *stream, uint8_t command,
                         bool answered)
 {
 	if (master->data_mode)
 		stream->out[stream->out_n++] = COMMAND_MODE;
 	master->data_mode = false;
-	if (master->strong)
-		stream->out[stream->out_n++] = END_PULSE;
-	stream->in_n += master->strong;
-	master->strong = false;
+	put_end(master, stream);
 	stream->out[stream->out_n++] = command;
 	stream->in_n += answered;
 }
@@ -67,10 +74,7 @@ static void put_command(struct serial_master *master, struct stream *stream, uin
 static void put_data(struct serial_master *master, struct stream *stream, uint8_t byte)
 {
 	if (!master->data_mode) {
-		if (master->strong)
-			stream->out[stream->out_n++] = END_PULSE;
-		stream->in_n += master->strong;
-		master->strong = false;
+		put_end(master, stream);
 		stream->out[stream->out_n++] = DATA_MODE;
 	}
 	master->data_mode = true;
@@ -83,8 +87,7 @@ static void put_data(struct serial_master *master, struct stream *stream, uint8_
 /* After an error the mode is not known; nor is what is still to come. */
 static int lose(struct serial_master *master, int err)
 {
-	master->lost = true;
-	return err;
+	return adapter_lose(&master->adapter, err);
 }
 
 static int send(struct serial_master *master, struct stream *stream)
@@ -111,10 +114,11 @@ static int ask_parameters(struct serial_master *master)
  * Back to command mode, whatever the adapter does: out of data mode, the accelerator off, the end
  * of a pulse. Twice, since the first byte may be the second of a doubled one.
  */
-static int resync(struct serial_master *master)
+static int ds2480b_settle(struct adapter *adapter)
 {
 	static const uint8_t out[] = {COMMAND_MODE, SEARCH_OFF, END_PULSE};
-	int err = master->port ? 0 : -ENODEV;
+	struct serial_master *master = serial_of(adapter);
+	int err = 0;
 
 	for (unsigned i = 0; !err && i < 2; i++) {
 		err = serial_settle(master);
@@ -123,10 +127,10 @@ static int resync(struct serial_master *master)
 	}
 	if (!err)
 		err = serial_settle(master);
-	master->data_mode = master->strong = false;
+	master->data_mode = adapter->strong = false;
 	if (!err)
 		err = ask_parameters(master);
-	master->lost = err != 0;
+	adapter->lost = err != 0;
 	return err;
 }
 
@@ -138,8 +142,8 @@ static bool is_chip(uint8_t answer)
 
 static int judge_reset(struct serial_master *master, uint8_t answer)
 {
-	master->cost.resets++;
-	master->cost.wire_ns += RESET_NS;
+	master->adapter.cost.resets++;
+	master->adapter.cost.wire_ns += RESET_NS;
 	if (!is_chip(answer))
 		return lose(master, -EIO);
 	switch (answer & RESULT) {
@@ -157,8 +161,9 @@ static int judge_reset(struct serial_master *master, uint8_t answer)
  * to end by itself. A chip that was without supply has forgotten how long it lasts. Returns what
  * the wire had, or an error.
  */
-static int run_bits(struct serial_master *master, uint8_t bits, unsigned n, bool strong)
+static int ds2480b_bits(struct adapter *adapter, uint8_t bits, unsigned n, bool strong)
 {
+	struct serial_master *master = serial_of(adapter);
 	struct stream stream = {.out_n = 0};
 	uint8_t command[8];
 	int back = 0;
@@ -176,8 +181,8 @@ static int run_bits(struct serial_master *master, uint8_t bits, unsigned n, bool
 		return err;
 	const uint8_t *answer = stream.in + stream.in_n - n;
 
-	master->cost.wire_ns += (uint64_t)n * SLOT_NS;
-	master->strong = strong;
+	master->adapter.cost.wire_ns += (uint64_t)n * SLOT_NS;
+	adapter->strong = strong;
 	if (strong && answer[-1] != ENDLESS)
 		return lose(master, -ENXIO);
 	for (unsigned i = 0; i < n; i++) {
@@ -190,10 +195,10 @@ static int run_bits(struct serial_master *master, uint8_t bits, unsigned n, bool
 	return back;
 }
 
-/* A reset, if it is asked for, and up to PIECE bytes of what is written and then read. */
-static int run_piece(struct serial_master *master, bool reset, const uint8_t *out, size_t out_n,
-                     uint8_t *in, size_t in_n)
+static int ds2480b_pass(struct adapter *adapter, bool reset, const uint8_t *out, size_t out_n,
+                        uint8_t *in, size_t in_n)
 {
+	struct serial_master *master = serial_of(adapter);
 	struct stream stream = {.out_n = 0};
 
 	if (reset)
@@ -207,7 +212,7 @@ static int run_piece(struct serial_master *master, bool reset, const uint8_t *ou
 		err = judge_reset(master, back[-1]);
 	if (err)
 		return err;
-	master->cost.wire_ns += (out_n + in_n) * 8 * SLOT_NS;
+	master->adapter.cost.wire_ns += (out_n + in_n) * 8 * SLOT_NS;
 	if (out_n && memcmp(back, out, out_n) != 0)
 		return lose(master, -EIO);
 	if (in_n)
@@ -215,56 +220,15 @@ static int run_piece(struct serial_master *master, bool reset, const uint8_t *ou
 	return 0;
 }
 
-/* After an error what went before is not known. */
-static int prepare(struct serial_master *master, bool reset)
-{
-	return !master->lost ? 0 : reset ? resync(master) : -EIO;
-}
-
-static int ds2480b_run(struct link *base, const struct link_part *part)
-{
-	struct serial_master *master = serial_of(base);
-	size_t strong = part->after == LINK_STRONG && part->out_n;
-	size_t out_n = part->out_n - strong, out_at = 0, in_at = 0;
-	bool reset = part->reset;
-	int err = prepare(master, reset);
-
-	if (!err && !reset && !out_n && !part->in_n && !strong)
-		return 0;
-	while (!err && (reset || out_at < out_n || (!strong && in_at < part->in_n))) {
-		size_t out = out_n - out_at < PIECE ? out_n - out_at : PIECE;
-		size_t in = part->in_n - in_at; /* none while out fills the piece */
-
-		if (in > PIECE - out)
-			in = PIECE - out;
-		err = run_piece(master, reset, part->out + out_at, out, part->in + in_at, in);
-		reset = false;
-		out_at += out;
-		in_at += in;
-	}
-	if (err || !strong)
-		return err;
-	int back = run_bits(master, part->out[out_n], 8, true);
-
-	return back < 0 ? back : back == part->out[out_n] ? 0 : lose(master, -EIO);
-}
-
-static int ds2480b_slot(struct link *base, bool out, enum link_after after)
-{
-	struct serial_master *master = serial_of(base);
-
-	return master->lost ? -EIO : run_bits(master, out, 1, after == LINK_STRONG);
-}
-
 /* Two bits for each of an id: the direction or what was taken, and below it the conflict. */
 static int ds2480b_path(struct link *base, bool reset, uint8_t command, uint8_t rom[8],
                         uint8_t conflict[8])
 {
-	struct serial_master *master = serial_of(base);
+	struct serial_master *master = serial_of(adapter_of(base));
 	struct stream stream = {.out_n = 0};
 	uint8_t answer[16];
 	bool nobody = true;
-	int err = prepare(master, reset);
+	int err = adapter_ready(&master->adapter, reset);
 
 	if (err)
 		return err;
@@ -287,7 +251,7 @@ static int ds2480b_path(struct link *base, bool reset, uint8_t command, uint8_t 
 		err = judge_reset(master, back[-1]);
 	if (err)
 		return err;
-	master->cost.wire_ns += UINT64_C(200) * SLOT_NS;
+	master->adapter.cost.wire_ns += UINT64_C(200) * SLOT_NS;
 	if (back[0] != command)
 		return lose(master, -EIO);
 	memcpy(answer, back + 1, sizeof(answer));
@@ -312,14 +276,14 @@ static void explain(const struct serial_master *master, bool answered, uint8_t a
 			why, size,
 			"nothing answers on %s: is a DS2480B there (DS9097U, LinkUSB), and does it "
 			"have its supply?",
-			master->name);
+			master->adapter.name);
 	else if ((answer | 1) == CALIBRATE)
 		snprintf(why, size,
 		         "%s gives back what is sent: a passive adapter, its target is uart:%s",
-		         master->name, master->name);
+		         master->adapter.name, master->adapter.name);
 	else
 		snprintf(why, size, "what answers on %s is no DS2480B: it said 0x%02X to a reset",
-		         master->name, answer);
+		         master->adapter.name, answer);
 }
 
 /* Into the state after power-on, at the speed of power-on, with a time base. */
@@ -327,22 +291,22 @@ static int master_reset(struct serial_master *master)
 {
 	static const uint8_t low = 0, calibrate = CALIBRATE;
 	struct serial_port *port = master->port;
-	int err = port->ops->speed(port, BREAK_BAUD);
+	int err = serial_speed(master, BREAK_BAUD);
 
 	port->ops->send_break(port);
 	if (!err)
 		err = port->ops->write(port, &low, 1);
 	if (!err)
-		err = serial_wait(master, 10 * NS_PER_MS);
+		err = adapter_wait(&master->adapter, 10 * NS_PER_MS);
 	if (!err)
-		err = port->ops->speed(port, BAUD);
+		err = serial_speed(master, BAUD);
 	if (!err)
 		err = serial_settle(master);
 	if (!err)
 		err = port->ops->write(port, &calibrate, 1);
 	if (!err)
 		err = serial_settle(master);
-	master->data_mode = master->strong = false;
+	master->data_mode = master->adapter.strong = false;
 	return err;
 }
 
@@ -367,46 +331,34 @@ static int ds2480b_begin(struct serial_master *master, char *why, size_t why_siz
 		if (answer[i] != (parameters[i] & 0xFE))
 			err = -EIO;
 	if (err) {
-		snprintf(why, why_size, "%s: %s", master->name, strerror(-err));
+		snprintf(why, why_size, "%s: %s", master->adapter.name, strerror(-err));
 		return lose(master, err);
 	}
-	master->lost = false;
+	master->adapter.lost = false;
 	return 0;
 }
 
-static int ds2480b_recover(struct link *base, enum link_rung rung)
+static int ds2480b_renew(struct adapter *adapter)
 {
-	struct serial_master *master = serial_of(base);
-	const struct link_part reset = {.reset = true};
 	char why[BUS_EVENT_TEXT];
-	int err;
 
-	if (!master->port)
-		return -ENODEV;
-	if (rung == LINK_POWER_CYCLE)
-		return -EOPNOTSUPP;
-	if (rung == LINK_CHIP_RESET) {
-		err = ds2480b_begin(master, why, sizeof(why));
-		if (err)
-			return err;
-	}
-	master->lost |= rung == LINK_BUS_RESET;
-	err = ds2480b_run(base, &reset);
-	return err == -EHOSTDOWN ? 0 : err;
+	return ds2480b_begin(serial_of(adapter), why, sizeof(why));
 }
 
 static const struct link_ops ds2480b_link = {
 	.name = "DS2480B",
-	.recover = ds2480b_recover,
-	.run = ds2480b_run,
-	.slot = ds2480b_slot,
 	.path = ds2480b_path,
-	.cost = serial_cost,
+	ADAPTER_LINK_SLOTS,
 };
 
 const struct serial_kind serial_ds2480b = {
-	.link = &ds2480b_link,
-	.facts = {.strong = true, .splits = true},
+	.adapter = {.link = &ds2480b_link,
+                    .facts = {.strong = true, .splits = true},
+                    .piece = PIECE,
+                    .settle = ds2480b_settle,
+                    .pass = ds2480b_pass,
+                    .bits = ds2480b_bits,
+                    .renew = ds2480b_renew},
 	.lag_ns = 8 * SLOT_NS + 10 * NS_PER_S / BAUD,
 	.begin = ds2480b_begin,
 };

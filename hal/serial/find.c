@@ -98,41 +98,6 @@ static unsigned find(struct place *place, char path[PATH_MAX])
 	return count;
 }
 
-static int explain(int err, const char *path, int holder, char *why, size_t size)
-{
-	char who[RIVALS_TEXT];
-
-	switch (err) {
-	case -ENOENT:
-	case -ENXIO:
-	case -ENODEV:
-		snprintf(why, size, "no %s: is the adapter plugged in? ls " SERIAL_BY_ID, path);
-		return -ENODEV;
-	case -EACCES:
-	case -EPERM:
-		snprintf(why, size,
-		         "no permission for %s: the user has to be in the group that owns it "
-		         "(dialout)",
-		         path);
-		return -EACCES;
-	case -EADDRINUSE:
-		rivals_name(RIVALS_PROC, holder, who, sizeof(who));
-		snprintf(why, size, "%s is in use by %s", path, who);
-		return -EBUSY;
-	case -EBUSY:
-		if (!rivals_find(RIVALS_PROC, path, who, sizeof(who)))
-			snprintf(who, sizeof(who), "another program");
-		snprintf(why, size, "%s is in use by %s", path, who);
-		return err;
-	case -ENOTTY:
-		snprintf(why, size, "%s is no serial port", path);
-		return err;
-	default:
-		snprintf(why, size, "%s: %s", path, strerror(-err));
-		return err;
-	}
-}
-
 /* The port was opened: what it is called, and whether it is the one that it was. */
 static void know(struct place *place, const struct bus_env *env, const char *path)
 {
@@ -161,6 +126,8 @@ static int open_place(void *ctx, const struct bus_env *env, struct serial_port *
 {
 	struct place *place = ctx;
 	char path[PATH_MAX];
+	const struct rivals_device device = {
+		path, path, "is the adapter plugged in? ls " SERIAL_BY_ID, "dialout"};
 	unsigned count = find(place, path);
 	int holder;
 
@@ -183,8 +150,12 @@ static int open_place(void *ctx, const struct bus_env *env, struct serial_port *
 	}
 	int err = tty_open(path, env, port, &holder);
 
+	if (err == -ENOTTY)
+		snprintf(why, why_size, "%s is no serial port", path);
+	else if (err)
+		err = rivals_refused(err, &device, holder, why, why_size);
 	if (err)
-		return explain(err, path, holder, why, why_size);
+		return err;
 	know(place, env, path);
 	return 0;
 }

@@ -23,38 +23,22 @@ enum { RESET = 0xF0, ONE = 0xFF, ZERO = 0x00 };
 
 #define PIECE 32 /* bytes of data at once: a byte of the line for each of their bits */
 
-static int set_speed(struct serial_master *master, unsigned baud)
+/* What still comes from before belongs to nothing. */
+static int passive_settle(struct adapter *adapter)
 {
-	if (!master->port)
-		return -ENODEV;
-	if (master->baud == baud)
-		return 0;
-	int err = master->port->ops->speed(master->port, baud);
+	int err = serial_settle(serial_of(adapter));
 
-	master->baud = err ? 0 : baud;
+	adapter->lost = err != 0;
 	return err;
 }
 
-/* What still comes from before belongs to nothing. */
-static int pass(struct serial_master *master, unsigned baud, const uint8_t *out, uint8_t *in,
-                size_t n)
+static int exchange(struct serial_master *master, unsigned baud, const uint8_t *out, uint8_t *in,
+                    size_t n)
 {
 	size_t got;
-	int err = master->lost ? serial_settle(master) : 0;
+	int err = serial_exchange(master, baud, out, n, in, n, &got);
 
-	if (!err)
-		err = set_speed(master, baud);
-	if (!err)
-		err = serial_exchange(master, baud, out, n, in, n, &got);
-	master->lost = err != 0;
-	return err == -ENOTTY ? -EIO : err;
-}
-
-/* What came back is not what was written: what the wire did is not known. */
-static int lose(struct serial_master *master)
-{
-	master->lost = true;
-	return -EIO;
+	return err ? adapter_lose(&master->adapter, err == -ENOTTY ? -EIO : err) : 0;
 }
 
 /*
@@ -65,45 +49,40 @@ static int reset(struct serial_master *master)
 {
 	static const uint8_t out = RESET;
 	uint8_t in = 0;
-	int err = pass(master, RESET_BAUD, &out, &in, 1);
+	int err = exchange(master, RESET_BAUD, &out, &in, 1);
 
 	if (err)
 		return err;
-	master->cost.resets++;
-	master->cost.wire_ns += RESET_NS;
+	master->adapter.cost.resets++;
+	master->adapter.cost.wire_ns += RESET_NS;
 	if (in == 0)
 		return -ECOMM;
 	if (in & 0x0F)
-		return lose(master);
+		return adapter_lose(&master->adapter, -EIO);
 	return in == RESET ? -EHOSTDOWN : 0;
-}
-
-/* With a reset, or a transaction goes on: after an error nothing is known of it. */
-static int begin(struct serial_master *master, bool anew)
-{
-	return anew ? reset(master) : master->lost ? -EIO : 0;
 }
 
 static int slots(struct serial_master *master, const uint8_t *line, uint8_t *back, size_t n)
 {
-	int err = pass(master, SLOT_BAUD, line, back, n);
+	int err = exchange(master, SLOT_BAUD, line, back, n);
 
 	if (!err)
-		master->cost.wire_ns += n * SLOT_NS;
+		master->adapter.cost.wire_ns += n * SLOT_NS;
 	return err;
 }
 
-/* Up to PIECE bytes. */
-static int run_piece(struct serial_master *master, const uint8_t *out, size_t out_n, uint8_t *in,
-                     size_t in_n)
+static int passive_pass(struct adapter *adapter, bool anew, const uint8_t *out, size_t out_n,
+                        uint8_t *in, size_t in_n)
 {
+	struct serial_master *master = serial_of(adapter);
 	uint8_t line[8 * PIECE], back[8 * PIECE];
 	size_t n = 8 * (out_n + in_n);
+	int err = anew ? reset(master) : 0;
 
 	for (size_t i = 0; i < n; i++)
 		line[i] = i / 8 >= out_n || (out[i / 8] >> i % 8 & 1) ? ONE : ZERO;
-	int err = slots(master, line, back, n);
-
+	if (!err && n)
+		err = slots(master, line, back, n);
 	if (err)
 		return err;
 	if (in_n)
@@ -112,45 +91,18 @@ static int run_piece(struct serial_master *master, const uint8_t *out, size_t ou
 		if (i / 8 >= out_n)
 			in[i / 8 - out_n] |= (uint8_t)((back[i] & 1) << i % 8);
 		else if ((back[i] ^ line[i]) & 1)
-			return lose(master);
+			return adapter_lose(adapter, -EIO);
 	}
 	return 0;
 }
 
-static int passive_run(struct link *base, const struct link_part *part)
+/* A slot alone: there is no strong pull-up, and so no byte before one. */
+static int passive_bits(struct adapter *adapter, uint8_t bit, unsigned n, bool strong)
 {
-	struct serial_master *master = serial_of(base);
-	size_t out_at = 0, in_at = 0;
+	uint8_t line = bit ? ONE : ZERO, back = 0;
+	int err = slots(serial_of(adapter), &line, &back, 1);
 
-	if (part->after == LINK_STRONG)
-		return -EOPNOTSUPP;
-	int err = begin(master, part->reset);
-
-	while (!err && (out_at < part->out_n || in_at < part->in_n)) {
-		size_t out = part->out_n - out_at, in = part->in_n - in_at;
-
-		if (out > PIECE)
-			out = PIECE;
-		if (in > PIECE - out)
-			in = PIECE - out;
-		err = run_piece(master, part->out + out_at, out, part->in + in_at, in);
-		out_at += out;
-		in_at += in;
-	}
-	return err;
-}
-
-static int passive_slot(struct link *base, bool out, enum link_after after)
-{
-	struct serial_master *master = serial_of(base);
-	uint8_t line = out ? ONE : ZERO, back = 0;
-
-	if (after == LINK_STRONG)
-		return -EOPNOTSUPP;
-	int err = begin(master, false);
-
-	if (!err)
-		err = slots(master, &line, &back, 1);
+	(void)n, (void)strong;
 	return err ? err : back & 1;
 }
 
@@ -195,7 +147,7 @@ static int follow(struct serial_master *master, uint8_t command, const uint8_t w
 			unsigned bit = (i - COMMAND) / 3;
 
 			if (what_is(i) == DIRECTION && ((back[i] ^ line[i]) & 1))
-				err = lose(master);
+				err = adapter_lose(&master->adapter, -EIO);
 			if (what_is(i) != COMPLEMENT)
 				continue;
 			unsigned is = back[i - 1] & 1, both = is == (back[i] & 1);
@@ -219,12 +171,14 @@ static int follow(struct serial_master *master, uint8_t command, const uint8_t w
 static int passive_path(struct link *base, bool anew, uint8_t command, uint8_t rom[8],
                         uint8_t conflict[8])
 {
-	struct serial_master *master = serial_of(base);
+	struct serial_master *master = serial_of(adapter_of(base));
 	bool all = command == ONEWIRE_SEARCH;
 	int expected = anew && all ? known_expect(&master->known, rom) : -1;
 	uint8_t id[8] = {0};
-	int err = begin(master, anew);
+	int err = adapter_ready(&master->adapter, anew);
 
+	if (!err && anew)
+		err = reset(master);
 	if (expected >= 0)
 		memcpy(id, master->known.id[expected], sizeof(id));
 	if (!err)
@@ -246,57 +200,46 @@ static int passive_path(struct link *base, bool anew, uint8_t command, uint8_t r
 
 static int passive_begin(struct serial_master *master, char *why, size_t why_size)
 {
-	master->lost = true;
-	int err = reset(master);
+	int err = passive_settle(&master->adapter);
 
+	if (!err)
+		err = reset(master);
 	if (!err || err == -EHOSTDOWN || err == -ECOMM)
-		err = set_speed(master, SLOT_BAUD);
+		err = serial_speed(master, SLOT_BAUD);
 	if (err == -ETIMEDOUT) {
 		snprintf(why, why_size,
 		         "nothing comes back from %s: no passive adapter; one with a DS2480B "
 		         "(DS9097U, LinkUSB) is serial:%s",
-		         master->name, master->name);
+		         master->adapter.name, master->adapter.name);
 		return -ENXIO;
 	}
 	if (err == -ENOTTY)
 		snprintf(why, why_size,
 		         "%s cannot have the speeds of a passive adapter, 9600 and 115200",
-		         master->name);
+		         master->adapter.name);
 	else if (err == -EIO)
 		snprintf(why, why_size,
 		         "%s does not give back what is sent: no passive adapter, or its speed is "
 		         "not what was set",
-		         master->name);
+		         master->adapter.name);
 	else if (err)
-		snprintf(why, why_size, "%s: %s", master->name, strerror(-err));
+		snprintf(why, why_size, "%s: %s", master->adapter.name, strerror(-err));
 	return err;
-}
-
-/* The adapter has no state: what can be out of step is what has come and was not read. */
-static int passive_recover(struct link *base, enum link_rung rung)
-{
-	struct serial_master *master = serial_of(base);
-
-	if (rung != LINK_BUS_RESET)
-		return -EOPNOTSUPP;
-	master->lost = true;
-	int err = reset(master);
-
-	return err == -EHOSTDOWN ? 0 : err;
 }
 
 static const struct link_ops passive_link = {
 	.name = "passive adapter",
-	.recover = passive_recover,
-	.run = passive_run,
-	.slot = passive_slot,
 	.path = passive_path,
-	.cost = serial_cost,
+	ADAPTER_LINK_SLOTS,
 };
 
 const struct serial_kind serial_passive = {
-	.link = &passive_link,
-	.facts = {.splits = true},
+	.adapter = {.link = &passive_link,
+                    .facts = {.splits = true},
+                    .piece = PIECE,
+                    .settle = passive_settle,
+                    .pass = passive_pass,
+                    .bits = passive_bits},
 	.lag_ns = SLOT_NS / 10, /* it comes as it goes: a bit for what the port's own time is off */
 	.begin = passive_begin,
 };

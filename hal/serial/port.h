@@ -6,7 +6,7 @@
  */
 #pragma once
 
-#include "hal/bus/bus.h"
+#include "hal/wire/link.h"
 
 struct serial_port;
 struct serial_port_ops {
@@ -24,7 +24,7 @@ struct serial_port_ops {
 struct serial_port {
 	const struct serial_port_ops *ops;
 	const struct bus_env *env;
-	uint64_t bytes, syscalls;
+	struct link_master_cost *cost; /* bytes and syscalls are counted there */
 };
 
 /* Where a port comes from, and who is told of it. */

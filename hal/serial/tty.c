@@ -51,7 +51,7 @@ static int tty_speed(struct serial_port *port, unsigned baud)
 	struct tty *tty = tty_of(port);
 	struct termios is;
 
-	port->syscalls += 2;
+	port->cost->syscalls += 2;
 	cfsetspeed(&tty->set, code_of(baud));
 	if (tcsetattr(tty->fd, TCSANOW, &tty->set) || tcgetattr(tty->fd, &is))
 		return errno == EINVAL ? -ENOTTY : gone(errno);
@@ -66,9 +66,9 @@ static int tty_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 	while (n) {
 		ssize_t sent = write(tty_of(port)->fd, bytes, n);
 
-		port->syscalls++;
+		port->cost->syscalls++;
 		if (sent > 0) {
-			port->bytes += (size_t)sent;
+			port->cost->bytes += (size_t)sent;
 			bytes += sent;
 			n -= (size_t)sent;
 			continue;
@@ -92,9 +92,9 @@ static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t 
 	for (;;) {
 		ssize_t came = read(tty_of(port)->fd, bytes, n);
 
-		port->syscalls++;
+		port->cost->syscalls++;
 		if (came > 0) {
-			port->bytes += (size_t)came;
+			port->cost->bytes += (size_t)came;
 			return (int)came;
 		}
 		if (came == 0)

@@ -55,9 +55,9 @@ enum { FLUSH = 0x0800, THEN_STRONG = 0x1000 };
 
 #define ARRIVED 0xA5 /* in place of a result: a device has come to the wire */
 
-static struct ds2490 *chip_of(struct link *link)
+static struct ds2490 *chip_of(struct adapter *adapter)
 {
-	return (struct ds2490 *)link;
+	return (struct ds2490 *)adapter;
 }
 
 int ds2490_parse(const uint8_t *bytes, int n, struct ds2490_state *state)
@@ -84,13 +84,12 @@ int ds2490_parse(const uint8_t *bytes, int n, struct ds2490_state *state)
 /* What the chip does now is not known: the next transaction clears its buffers. */
 static int lose(struct ds2490 *chip, int err)
 {
-	chip->lost = true;
-	return err;
+	return adapter_lose(&chip->adapter, err);
 }
 
 static int control(struct ds2490 *chip, unsigned request, unsigned value, unsigned index)
 {
-	chip->shared.transfers++;
+	chip->adapter.shared.transfers++;
 	return chip->port->ops->control(chip->port, (uint8_t)request, (uint16_t)value,
 	                                (uint16_t)index);
 }
@@ -98,25 +97,18 @@ static int control(struct ds2490 *chip, unsigned request, unsigned value, unsign
 /* All of them, of a bulk endpoint. */
 static int transfer(struct ds2490 *chip, uint8_t endpoint, uint8_t *bytes, size_t n)
 {
-	chip->shared.transfers++;
-	chip->shared.bytes += n;
+	chip->adapter.shared.transfers++;
+	chip->adapter.shared.bytes += n;
 	int done = chip->port->ops->transfer(chip->port, endpoint, bytes, n);
 
 	return done < 0 ? done : (size_t)done == n ? 0 : -EIO;
-}
-
-static int wait_for(struct ds2490 *chip, int64_t ns)
-{
-	const struct bus_env *env = chip->link.env;
-
-	return env->wait(env->ctx, -1, 0, bus_now(env) + ns) < 0 ? -ECANCELED : 0;
 }
 
 static int look(struct ds2490 *chip, struct ds2490_state *state)
 {
 	uint8_t bytes[STATE_MAX];
 
-	chip->shared.transfers++;
+	chip->adapter.shared.transfers++;
 	int n = chip->port->ops->transfer(chip->port, USB_STATE, bytes, sizeof(bytes));
 
 	return n < 0 ? n : ds2490_parse(bytes, n, state);
@@ -142,12 +134,14 @@ static bool is_pulled_up(const struct ds2490_state *state)
 /* Look until it is so: 0, -EIO: it does not become so, or an error. */
 static int expect(struct ds2490 *chip, bool (*is)(const struct ds2490_state *state), bool wanted)
 {
-	int64_t until_ns = bus_now(chip->link.env) + LATE_NS;
+	int64_t until_ns = bus_now(chip->adapter.link.env) + LATE_NS;
 	struct ds2490_state state;
 	int err;
 
 	while (!(err = look(chip, &state)) && is(&state) != wanted) {
-		err = bus_now(chip->link.env) < until_ns ? wait_for(chip, LOOK_NS) : -EIO;
+		err = bus_now(chip->adapter.link.env) < until_ns
+		              ? adapter_wait(&chip->adapter, LOOK_NS)
+		              : -EIO;
 		if (err)
 			break;
 	}
@@ -164,8 +158,27 @@ static int send_all(struct ds2490 *chip, const uint8_t (*requests)[3], size_t n)
 	return err;
 }
 
+static int halt(struct ds2490 *chip, bool (*is)(const struct ds2490_state *state), bool wanted)
+{
+	int err = control(chip, CONTROL, HALT_IDLE, 0);
+
+	return err ? err : expect(chip, is, wanted);
+}
+
+/* After these requests all buffers are empty, and nothing is on. */
+static int clean(struct ds2490 *chip, const uint8_t (*requests)[3], size_t n)
+{
+	int err = send_all(chip, requests, n);
+
+	if (!err)
+		err = expect(chip, is_clean, true);
+	chip->adapter.strong &= err != 0;
+	chip->adapter.lost = err != 0;
+	return err;
+}
+
 /* Into the state after power-on, and set up. The slew rate stays what it is then. */
-static int reset_chip(struct ds2490 *chip)
+static int ds2490_renew(struct adapter *adapter)
 {
 	static const uint8_t requests[][3] = {
 		{CONTROL, RESET_DEVICE, 0},
@@ -173,59 +186,45 @@ static int reset_chip(struct ds2490 *chip)
 		{MODE, SPEED, FLEXIBLE},
 		{MODE, PULL_UP, ENDLESS},
 	};
+	struct ds2490 *chip = chip_of(adapter);
 	int err = chip->port->ops->clear(chip->port);
 
-	if (!err)
-		err = send_all(chip, requests, 4);
-	if (!err)
-		err = expect(chip, is_clean, true);
-	chip->strong &= err != 0;
-	chip->lost = err != 0;
-	return err;
+	return err ? lose(chip, err) : clean(chip, requests, 4);
 }
 
-/* It heeds the flushes only while it is halted. */
-static const uint8_t halt[][3] = {{CONTROL, HALT_IDLE, 0}};
-static const uint8_t resume[][3] = {{CONTROL, RESUME, 0}};
-
 /*
- * Whatever an error has left: out of a halted state, and all buffers empty. Where that does not
- * help, as with a chip that has lost a command (OVERRUN), a reset does.
+ * Whatever an error has left: out of a halted state, and all buffers empty. The chip heeds the
+ * flushes only while it is halted. Where that does not help, as with one that has lost a command
+ * (OVERRUN), a reset does.
  */
-static int settle(struct ds2490 *chip)
+static int ds2490_settle(struct adapter *adapter)
 {
 	static const uint8_t flushes[][3] = {
-		{CONTROL, FLUSH_COMMANDS, 0}, {CONTROL, FLUSH_IN, 0}, {CONTROL, FLUSH_OUT, 0}};
+		{CONTROL, FLUSH_COMMANDS, 0},
+		{CONTROL, FLUSH_IN, 0},
+		{CONTROL, FLUSH_OUT, 0},
+		{CONTROL, RESUME, 0},
+	};
+	struct ds2490 *chip = chip_of(adapter);
 	int err = chip->port->ops->clear(chip->port);
 
 	if (!err)
-		err = send_all(chip, halt, 1);
+		err = halt(chip, is_halted, true);
 	if (!err)
-		err = expect(chip, is_halted, true);
-	if (!err)
-		err = send_all(chip, flushes, 3);
-	if (!err)
-		err = send_all(chip, resume, 1);
-	if (!err)
-		err = expect(chip, is_clean, true);
-	chip->strong &= err != 0;
-	chip->lost = err != 0;
-	return err == -EIO || err == -ETIMEDOUT ? reset_chip(chip) : err;
+		err = clean(chip, flushes, 4);
+	return err == -EIO || err == -ETIMEDOUT ? ds2490_renew(adapter) : err;
 }
 
 /* A pulse without end ends where the chip is halted. */
-static int end_strong(struct ds2490 *chip)
+int ds2490_end_strong(struct ds2490 *chip)
 {
-	int err = 0;
-
-	if (!chip->strong)
+	if (!chip->adapter.strong)
 		return 0;
-	err = send_all(chip, halt, 1);
+	int err = halt(chip, is_pulled_up, false);
+
+	chip->adapter.strong = err != 0;
 	if (!err)
-		err = expect(chip, is_pulled_up, false);
-	chip->strong = err != 0;
-	if (!err)
-		err = send_all(chip, resume, 1);
+		err = control(chip, CONTROL, RESUME, 0);
 	return err ? lose(chip, err) : 0;
 }
 
@@ -252,13 +251,13 @@ static bool has_ended(struct ds2490 *chip, const struct goal *goal,
 
 static int finish(struct ds2490 *chip, const struct goal *goal, struct ds2490_state *state)
 {
-	const struct bus_env *env = chip->link.env;
+	const struct bus_env *env = chip->adapter.link.env;
 	int64_t until_ns = bus_now(env) + goal->wire_ns + LATE_NS;
 	uint8_t results = 0;
 	unsigned idle = 0;
-	int err = wait_for(chip, goal->wire_ns);
+	int err = adapter_wait(&chip->adapter, goal->wire_ns);
 
-	chip->cost.wire_ns += (uint64_t)goal->wire_ns;
+	chip->adapter.cost.wire_ns += (uint64_t)goal->wire_ns;
 	while (!err) {
 		err = look(chip, state);
 		if (err)
@@ -270,7 +269,7 @@ static int finish(struct ds2490 *chip, const struct goal *goal, struct ds2490_st
 		results |= state->results;
 		if (err || has_ended(chip, goal, state, &idle))
 			break;
-		err = bus_now(env) >= until_ns ? -ETIMEDOUT : wait_for(chip, LOOK_NS);
+		err = bus_now(env) >= until_ns ? -ETIMEDOUT : adapter_wait(&chip->adapter, LOOK_NS);
 	}
 	state->results = results;
 	if (!err && goal->in && state->in != goal->in)
@@ -289,11 +288,19 @@ static int reset_wire(struct ds2490 *chip)
 	err = finish(chip, &goal, &state);
 	if (err)
 		return err;
-	chip->cost.resets++;
+	chip->adapter.cost.resets++;
 	chip->tells |= state.told && !state.results;
 	if (state.in || state.out)
 		return lose(chip, -EIO); /* of another transaction */
 	return state.results & SHORT ? -ECOMM : state.results & NOBODY ? -EHOSTDOWN : 0;
+}
+
+/* Before a command on the wire. */
+static int ready(struct ds2490 *chip, bool reset)
+{
+	int err = ds2490_end_strong(chip);
+
+	return !err && reset ? reset_wire(chip) : err;
 }
 
 /* Bytes that were sent to the wire, as it had them. */
@@ -308,23 +315,24 @@ static int take_back(struct ds2490 *chip, const struct goal *goal, uint8_t *byte
 	return err ? lose(chip, err) : 0;
 }
 
-static int run_piece(struct ds2490 *chip, const uint8_t *out, size_t out_n, uint8_t *in,
-                     size_t in_n)
+static int ds2490_pass(struct adapter *adapter, bool reset, const uint8_t *out, size_t out_n,
+                       uint8_t *in, size_t in_n)
 {
 	const struct goal goal = {.wire_ns = (int64_t)(out_n + in_n) * 8 * SLOT_NS,
 	                          .in = out_n + in_n};
+	struct ds2490 *chip = chip_of(adapter);
 	uint8_t bytes[PIECE];
+	int err = ready(chip, reset);
 
+	if (err || !goal.in)
+		return err;
 	memset(bytes, 0xFF, sizeof(bytes));
 	if (out_n)
 		memcpy(bytes, out, out_n);
-	int err = transfer(chip, USB_OUT, bytes, goal.in);
-
+	err = transfer(chip, USB_OUT, bytes, goal.in);
 	if (!err)
 		err = control(chip, COMMUNICATION, BLOCK_IO | NOW | FLUSH, (unsigned)goal.in);
-	if (err)
-		return lose(chip, err);
-	err = take_back(chip, &goal, bytes);
+	err = err ? lose(chip, err) : take_back(chip, &goal, bytes);
 	if (!err && out_n && memcmp(bytes, out, out_n) != 0)
 		err = lose(chip, -EIO);
 	if (!err && in_n)
@@ -332,66 +340,22 @@ static int run_piece(struct ds2490 *chip, const uint8_t *out, size_t out_n, uint
 	return err;
 }
 
-/* One byte, or one bit as command has it: what came back, or an error. */
-static int run_command(struct ds2490 *chip, unsigned command, unsigned index, unsigned slots,
-                       enum link_after after)
+static int ds2490_bits(struct adapter *adapter, uint8_t bits, unsigned n, bool strong)
 {
-	const struct goal goal = {
-		.wire_ns = slots * SLOT_NS, .in = 1, .strong = after == LINK_STRONG};
+	const struct goal goal = {.wire_ns = n * SLOT_NS, .in = 1, .strong = strong};
+	unsigned command = n == 1 ? BIT_IO | (bits ? ONE : 0) : BYTE_IO;
+	struct ds2490 *chip = chip_of(adapter);
 	uint8_t back = 0;
+	int err = ready(chip, false);
 
-	if (goal.strong)
-		command |= THEN_STRONG;
-	int err = control(chip, COMMUNICATION, command | NOW | FLUSH, index);
-
-	chip->strong = goal.strong;
-	err = err ? lose(chip, err) : take_back(chip, &goal, &back);
-	return err ? err : back;
-}
-
-/* Before each call on the wire. */
-static int prepare(struct ds2490 *chip, bool anew)
-{
-	if (!chip->port)
-		return -ENODEV;
-	if (chip->lost)
-		return anew ? settle(chip) : -EIO; /* what went before is not known */
-	return end_strong(chip);
-}
-
-static int ds2490_run(struct link *base, const struct link_part *part)
-{
-	struct ds2490 *chip = chip_of(base);
-	size_t strong = part->after == LINK_STRONG && part->out_n;
-	size_t out_n = part->out_n - strong, out_at = 0, in_at = 0;
-	int err = prepare(chip, part->reset);
-
-	if (!err && part->reset)
-		err = reset_wire(chip);
-	while (!err && (out_at < out_n || (!strong && in_at < part->in_n))) {
-		size_t out = out_n - out_at < PIECE ? out_n - out_at : PIECE;
-		size_t in = out_at + out < out_n || strong ? 0 : part->in_n - in_at;
-
-		if (in > PIECE - out)
-			in = PIECE - out;
-		err = run_piece(chip, part->out + out_at, out, part->in + in_at, in);
-		out_at += out;
-		in_at += in;
-	}
-	if (err || !strong)
+	if (err)
 		return err;
-	int back = run_command(chip, BYTE_IO, part->out[out_n], 8, LINK_STRONG);
-
-	return back < 0 ? back : back == part->out[out_n] ? 0 : lose(chip, -EIO);
-}
-
-static int ds2490_slot(struct link *base, bool out, enum link_after after)
-{
-	struct ds2490 *chip = chip_of(base);
-	int err = prepare(chip, false);
-	int back = err ? err : run_command(chip, BIT_IO | (out ? ONE : 0), 0, 1, after);
-
-	return back < 0 ? back : back & 1;
+	if (strong)
+		command |= THEN_STRONG;
+	err = control(chip, COMMUNICATION, command | NOW | FLUSH, n == 1 ? 0 : bits);
+	adapter->strong = strong;
+	err = err ? lose(chip, err) : take_back(chip, &goal, &back);
+	return err ? err : n == 1 ? back & 1 : back;
 }
 
 /*
@@ -403,13 +367,13 @@ static int ds2490_path(struct link *base, bool reset, uint8_t command, uint8_t r
                        uint8_t conflict[8])
 {
 	const struct goal goal = {.wire_ns = 200 * SLOT_NS};
-	struct ds2490 *chip = chip_of(base);
+	struct ds2490 *chip = chip_of(adapter_of(base));
 	struct ds2490_state state;
 	uint8_t bytes[16] = {0};
-	int err = prepare(chip, reset);
+	int err = adapter_ready(&chip->adapter, reset);
 
-	if (!err && reset)
-		err = reset_wire(chip);
+	if (!err)
+		err = ready(chip, reset);
 	if (err)
 		return err;
 	err = transfer(chip, USB_OUT, rom, 8);
@@ -436,61 +400,34 @@ static int ds2490_path(struct link *base, bool reset, uint8_t command, uint8_t r
 
 int ds2490_begin(struct ds2490 *chip)
 {
-	chip->strong = chip->tells = false;
-	int err = reset_chip(chip);
+	chip->adapter.strong = chip->tells = false;
+	int err = ds2490_renew(&chip->adapter);
 
 	if (err == -EIO || err == -ETIMEDOUT) {
 		err = chip->port->ops->reset(chip->port);
 		if (!err)
-			err = reset_chip(chip);
+			err = ds2490_renew(&chip->adapter);
 	}
 	return err;
 }
 
-void ds2490_end(struct ds2490 *chip)
-{
-	(void)end_strong(chip);
-}
-
-/* The adapter's supply is that of USB, which cannot be switched here. */
-static int ds2490_recover(struct link *base, enum link_rung rung)
-{
-	struct ds2490 *chip = chip_of(base);
-	const struct link_part reset = {.reset = true};
-
-	if (!chip->port)
-		return -ENODEV;
-	if (rung == LINK_POWER_CYCLE)
-		return -EOPNOTSUPP;
-	if (rung == LINK_CHIP_RESET) {
-		int err = reset_chip(chip);
-
-		if (err)
-			return err;
-	}
-	chip->lost |= rung == LINK_BUS_RESET;
-	int err = ds2490_run(base, &reset);
-
-	return err == -EHOSTDOWN ? 0 : err;
-}
-
-static void ds2490_cost(const struct link *link, struct link_cost *cost)
-{
-	*cost = ((const struct ds2490 *)link)->cost;
-}
-
-static const struct link_ops ops = {
+static const struct link_ops ds2490_link = {
 	.name = "DS2490",
-	.recover = ds2490_recover,
-	.run = ds2490_run,
-	.slot = ds2490_slot,
 	.path = ds2490_path,
-	.cost = ds2490_cost,
+	ADAPTER_LINK_SLOTS,
 };
 
-static const struct link_facts facts = {.strong = true, .splits = true};
+static const struct adapter_kind ds2490 = {
+	.link = &ds2490_link,
+	.facts = {.strong = true, .splits = true},
+	.piece = PIECE,
+	.settle = ds2490_settle,
+	.pass = ds2490_pass,
+	.bits = ds2490_bits,
+	.renew = ds2490_renew,
+};
 
-void ds2490_init(struct ds2490 *chip, const struct bus_env *env)
+void ds2490_init(struct ds2490 *chip, const struct link_master_ops *ops, const struct bus_env *env)
 {
-	*chip = (struct ds2490){.link = {.ops = &ops, .facts = &facts, .env = env}};
+	adapter_init(&chip->adapter, &ds2490, ops, env);
 }

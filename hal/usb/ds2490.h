@@ -3,22 +3,19 @@
 #pragma once
 
 #include "hal/usb/port.h"
-#include "hal/wire/link.h"
+#include "hal/wire/adapter.h"
 
 struct ds2490 {
-	struct link link;
-	struct usb_port *port; /* NULL: closed */
-	struct link_cost cost;
-	struct link_master_cost shared;
-	bool strong, lost; /* the pull-up may be on; what the chip does now is not known */
-	bool tells;        /* it has said of a reset that all is well */
+	struct adapter adapter;
+	struct usb_port *port; /* while the adapter is open */
+	bool tells;            /* it has said of a reset that all is well */
 };
 
-void ds2490_init(struct ds2490 *chip, const struct bus_env *env);
+void ds2490_init(struct ds2490 *chip, const struct link_master_ops *ops, const struct bus_env *env);
 /* The port was opened: 0, or an error. */
 int ds2490_begin(struct ds2490 *chip);
-/* The port will be closed: nobody else would end a strong pull-up. */
-void ds2490_end(struct ds2490 *chip);
+/* End a strong pull-up that may be on. 0, or an error. */
+int ds2490_end_strong(struct ds2490 *chip);
 
 /* A packet of the interrupt endpoint (data sheet, tables 16 and 17). */
 struct ds2490_state {

@@ -135,34 +135,21 @@ static int claim(struct adapter *adapter)
 
 static int explain(int err, const struct usb_place *place, int holder, char *why, size_t size)
 {
-	char who[RIVALS_TEXT] = "another program, as an owserver";
+	char name[sizeof(USB_CALLED) + USB_NAME];
+	const struct rivals_device device = {
+		.name = name,
+		.path = place->device,
+		.group = "dialout, to which owsd's udev rule gives it",
+	};
 
-	switch (err) {
-	case -ENOENT:
-	case -ENODEV:
-		snprintf(why, size, "the adapter at USB %s is gone: is it plugged in?",
-		         place->name);
+	snprintf(name, sizeof(name), USB_CALLED, place->name);
+	if (err == -ENOENT || err == -ENODEV) {
+		snprintf(why, size, "%s is gone: is it plugged in?", name);
 		return -ENODEV;
-	case -EACCES:
-	case -EPERM:
-		snprintf(why, size,
-		         "no permission for the adapter at USB %s (%s): the user has to be in the "
-		         "group dialout, to which owsd's udev rule gives it",
-		         place->name, place->device);
-		return -EACCES;
-	case -EADDRINUSE:
-		rivals_name(RIVALS_PROC, holder, who, sizeof(who));
-		break;
-	case -EBUSY:
-		if (!rivals_find(RIVALS_PROC, place->device, who, sizeof(who)) && *place->driver &&
-		    strcmp(place->driver, "usbfs") != 0)
-			snprintf(who, sizeof(who), "the kernel's driver %s", place->driver);
-		break;
-	default:
-		snprintf(why, size, "the adapter at USB %s: %s", place->name, strerror(-err));
-		return err;
 	}
-	snprintf(why, size, "the adapter at USB %s is in use by %s", place->name, who);
+	if (err != -EBUSY || !*place->driver || strcmp(place->driver, "usbfs") == 0)
+		return rivals_refused(err, &device, holder, why, size);
+	snprintf(why, size, "%s is in use by the kernel's driver %s", name, place->driver);
 	return -EBUSY;
 }
 

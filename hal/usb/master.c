@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hal/base/rivals.h"
 #include "hal/native/native.h"
 #include "hal/owfs/path.h"
 #include "hal/usb/ds2490.h"
@@ -22,7 +21,6 @@
 #define OWN_TRIES 3
 
 struct usb_master {
-	struct link_master master;
 	struct ds2490 chip;
 	const struct usb_system *system;
 	char where[USB_NAME];   /* the target's "1-1.4"; "": it names no port */
@@ -54,14 +52,15 @@ int usb_create(const struct usb_system *system, const char *where, const struct 
 
 	if (!master)
 		return -ENOMEM;
-	master->master = (struct link_master){.ops = &usb_master_ops, .env = env};
-	ds2490_init(&master->chip, env);
+	ds2490_init(&master->chip, &usb_master_ops, env);
+	master->chip.adapter.device = master->place.device;
+	master->chip.adapter.proc = system->proc;
 	master->system = system;
 	memcpy(master->rom, rom, sizeof(rom));
 	master->turn = rom[1]; /* targets of several adapters do not all begin with one */
 	if (is_port)
 		snprintf(master->where, sizeof(master->where), "%s", where);
-	*out = &master->master;
+	*out = &master->chip.adapter.master;
 	return 0;
 }
 
@@ -84,7 +83,7 @@ static int find_own(struct usb_master *master, uint8_t rom[8])
 	for (int i = 0; i < OWN_TRIES; i++) {
 		count = 0;
 		search_begin(&search, false, OWN_FAMILY);
-		while ((found = search_next(&search, &master->chip.link)) > 0) {
+		while ((found = search_next(&search, &master->chip.adapter.link)) > 0) {
 			if (!count++ || memcmp(search.rom, master->rom, 8) == 0)
 				memcpy(rom, search.rom, 8);
 		}
@@ -116,17 +115,14 @@ static int judge(struct usb_master *master, bool only, char *why, size_t size)
 		return memcmp(rom, master->rom, 8) != 0 ? -ENXIO : 0;
 	if (own == 0) {
 		/* it may have its supply for a moment only */
-		snprintf(why, size, "the adapter at USB %s does not show its own chip",
-		         master->place.name);
+		snprintf(why, size, "%s does not show its own chip", master->chip.adapter.name);
 		return -EIO;
 	}
 	if (only)
 		return 0;
 	rom_print(master->rom, ROM_F_I, text);
-	snprintf(why, size,
-	         "it is not known whether the adapter at USB %s has the chip %s: its wire fails "
-	         "(%s)",
-	         master->place.name, text, strerror(-own));
+	snprintf(why, size, "it is not known whether %s has the chip %s: its wire fails (%s)",
+	         master->chip.adapter.name, text, strerror(-own));
 	return own == -ENXIO ? -EIO : own;
 }
 
@@ -137,21 +133,22 @@ static int judge(struct usb_master *master, bool only, char *why, size_t size)
 static int try_place(struct usb_master *master, const struct usb_place *place, bool only, char *why,
                      size_t size)
 {
+	struct adapter *adapter = &master->chip.adapter;
 	int err = master->system->open(place, &master->chip.port, why, size);
 
 	if (err)
 		return err;
+	adapter->open = true;
 	master->place = *place;
+	snprintf(adapter->name, sizeof(adapter->name), USB_CALLED, place->name);
 	err = ds2490_begin(&master->chip);
 	if (err)
-		snprintf(
-			why, size,
-			"the adapter at USB %s does not answer (%s): unplug it and plug it in again",
-			place->name, strerror(-err));
+		snprintf(why, size, "%s does not answer (%s): unplug it and plug it in again",
+		         adapter->name, strerror(-err));
 	else
 		err = judge(master, only, why, size);
 	if (err)
-		master->master.ops->close(&master->master);
+		adapter->master.ops->close(&adapter->master);
 	if (err == -ENXIO || (err && !only)) {
 		master->system->give_back(place);
 		master->place.name[0] = '\0';
@@ -216,11 +213,11 @@ static void usb_close(struct link_master *base)
 {
 	struct usb_master *master = usb_of(base);
 
-	if (!master->chip.port)
+	if (!master->chip.adapter.open)
 		return;
-	ds2490_end(&master->chip);
+	(void)ds2490_end_strong(&master->chip); /* nobody else would */
 	master->chip.port->ops->close(master->chip.port);
-	master->chip.port = NULL;
+	master->chip.adapter.open = false;
 }
 
 static int usb_visible(struct link_master *base, uint64_t *mark)
@@ -234,36 +231,6 @@ static int usb_visible(struct link_master *base, uint64_t *mark)
 	for (unsigned i = 0; i < n && *mark != master->others; i++)
 		visible |= !*master->where || strcmp(master->where, places[i].name) == 0;
 	return visible;
-}
-
-static void usb_trouble(struct link_master *base, bool failed, char *text, size_t size)
-{
-	struct usb_master *master = usb_of(base);
-	char who[RIVALS_TEXT];
-
-	(void)failed;
-	text[0] = '\0';
-	if (master->system->proc &&
-	    rivals_find(master->system->proc, master->place.device, who, sizeof(who)))
-		snprintf(text, size,
-		         "the adapter at USB %s is also open in %s: two programs on one adapter "
-		         "disturb each other",
-		         master->place.name, who);
-}
-
-static unsigned usb_channels(struct link_master *base)
-{
-	return usb_of(base)->chip.port != NULL;
-}
-
-static struct link *usb_channel(struct link_master *base, unsigned n)
-{
-	return n == 0 ? &usb_of(base)->chip.link : NULL;
-}
-
-static void usb_cost(const struct link_master *base, struct link_master_cost *cost)
-{
-	*cost = ((const struct usb_master *)base)->chip.shared;
 }
 
 /* The kernel's driver gets it at the end alone: not for the moment of each new try. */
@@ -288,11 +255,8 @@ const struct link_master_ops usb_master_ops = {
 	.open = usb_open,
 	.close = usb_close,
 	.visible = usb_visible,
-	.trouble = usb_trouble,
-	.channels = usb_channels,
-	.channel = usb_channel,
-	.cost = usb_cost,
 	.destroy = usb_destroy,
+	ADAPTER_MASTER_SLOTS,
 };
 
 static int usb_bus_create(const char *where, const struct bus_env *env, struct bus **bus, char *why,

@@ -31,6 +31,7 @@ struct usb_port {
 };
 
 #define USB_NAME 32
+#define USB_CALLED "the adapter at USB %s"
 /* An adapter that is plugged in. */
 struct usb_place {
 	char name[USB_NAME];   /* its bus and ports, as the kernel writes them: "1-1.4" */

@@ -36,7 +36,7 @@ static int port_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 		return -ETIMEDOUT;
 	for (size_t i = 0; i < n && !is_gone(); i++)
 		sim_serial_send(&serial.sim, bytes[i], serial.baud, serial.host.now);
-	port->bytes += n;
+	port->cost->bytes += n;
 	return is_gone() ? -ENODEV : 0;
 }
 
@@ -109,14 +109,7 @@ static void forget(void *ctx)
 }
 
 static const struct link_master_ops master_ops = {
-	.open = serial_open,
-	.close = serial_close,
-	.visible = serial_visible,
-	.trouble = serial_trouble,
-	.channels = serial_channels,
-	.channel = serial_channel,
-	.cost = serial_master_cost,
-	.destroy = serial_destroy,
+	SERIAL_MASTER_SLOTS,
 };
 
 void serial_begin(void)

@@ -417,6 +417,35 @@ static void test_a_program_that_works_the_wire_between_is_named(void)
 	native_destroy(bus);
 }
 
+static void test_a_device_that_cannot_be_opened_is_named_with_what_to_do(void)
+{
+	static const struct rivals_device device = {"the stick", DEVICE, "plug it in", "dialout"};
+	static const struct {
+		int err, is;
+		const char *why;
+	} cases[] = {
+		{-ENOENT, -ENODEV, "no the stick: plug it in"},
+		{-ENXIO, -ENODEV, "no the stick: plug it in"},
+		{-ENODEV, -ENODEV, "no the stick: plug it in"},
+		{-EACCES, -EACCES,
+	         "no permission for the stick: the user has to be in the group that owns it "
+	         "(dialout)"},
+		{-EPERM, -EACCES,
+	         "no permission for the stick: the user has to be in the group that owns it "
+	         "(dialout)"},
+		{-EADDRINUSE, -EBUSY, "the stick is in use by another target or process"},
+		{-EBUSY, -EBUSY, "the stick is in use by "},
+		{-EIO, -EIO, "the stick: Input/output error"},
+	};
+	char why[200];
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		TEST_ASSERT_EQUAL_INT(cases[i].is,
+		                      rivals_refused(cases[i].err, &device, 0, why, sizeof(why)));
+		TEST_ASSERT_EQUAL_STRING_LEN(cases[i].why, why, strlen(cases[i].why));
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -436,5 +465,6 @@ int main(void)
 	RUN_TEST(test_a_bus_reports_the_program_and_the_change);
 	RUN_TEST(test_a_hidden_program_that_works_the_wire_between_is_asked_for_once);
 	RUN_TEST(test_a_program_that_works_the_wire_between_is_named);
+	RUN_TEST(test_a_device_that_cannot_be_opened_is_named_with_what_to_do);
 	return UNITY_END();
 }

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT */
+/* An adapter with one wire: its transactions in pieces, its errors, its rivals. */
+#include <stdio.h>
+
+#include "hal/base/rivals.h"
+#include "hal/wire/adapter.h"
+
+void adapter_init(struct adapter *adapter, const struct adapter_kind *kind,
+                  const struct link_master_ops *ops, const struct bus_env *env)
+{
+	adapter->master = (struct link_master){.ops = ops, .env = env};
+	adapter->link = (struct link){.ops = kind->link, .facts = &kind->facts, .env = env};
+	adapter->kind = kind;
+}
+
+int adapter_lose(struct adapter *adapter, int err)
+{
+	adapter->lost = true;
+	return err;
+}
+
+/* After an error what went before is not known. */
+int adapter_ready(struct adapter *adapter, bool anew)
+{
+	if (!adapter->open)
+		return -ENODEV;
+	return !adapter->lost ? 0 : anew ? adapter->kind->settle(adapter) : -EIO;
+}
+
+int adapter_wait(struct adapter *adapter, int64_t ns)
+{
+	const struct bus_env *env = adapter->link.env;
+
+	return env->wait(env->ctx, -1, 0, bus_now(env) + ns) < 0 ? -ECANCELED : 0;
+}
+
+static bool is_refused(const struct adapter *adapter, enum link_after after)
+{
+	return after == LINK_STRONG && !adapter->kind->facts.strong;
+}
+
+static size_t least(size_t a, size_t b)
+{
+	return a < b ? a : b;
+}
+
+/* The byte after which the wire is fed goes alone: nothing can follow it in a piece. */
+int adapter_run(struct link *base, const struct link_part *part)
+{
+	struct adapter *adapter = adapter_of(base);
+	const struct adapter_kind *kind = adapter->kind;
+	bool reset = part->reset, strong = part->after == LINK_STRONG && part->out_n;
+	size_t out_n = part->out_n - strong, in_n = strong ? 0 : part->in_n;
+	size_t out_at = 0, in_at = 0;
+	int err = is_refused(adapter, part->after) ? -EOPNOTSUPP : adapter_ready(adapter, reset);
+
+	while (!err && (reset || out_at < out_n || in_at < in_n)) {
+		size_t out = least(out_n - out_at, kind->piece);
+		size_t in = least(in_n - in_at, kind->piece - out);
+
+		err = kind->pass(adapter, reset, part->out + out_at, out, part->in + in_at, in);
+		reset = false;
+		out_at += out;
+		in_at += in;
+	}
+	if (err || !strong)
+		return err;
+	int back = kind->bits(adapter, part->out[out_n], 8, true);
+
+	return back < 0 ? back : back == part->out[out_n] ? 0 : adapter_lose(adapter, -EIO);
+}
+
+int adapter_slot(struct link *base, bool out, enum link_after after)
+{
+	struct adapter *adapter = adapter_of(base);
+	int err = is_refused(adapter, after) ? -EOPNOTSUPP : adapter_ready(adapter, false);
+
+	return err ? err : adapter->kind->bits(adapter, out, 1, after == LINK_STRONG);
+}
+
+/* The supply of the wire is that of the adapter, which cannot be switched. */
+int adapter_recover(struct link *base, enum link_rung rung)
+{
+	struct adapter *adapter = adapter_of(base);
+	const struct link_part reset = {.reset = true};
+	int err = 0;
+
+	if (!adapter->open)
+		return -ENODEV;
+	if (rung == LINK_POWER_CYCLE || (rung == LINK_CHIP_RESET && !adapter->kind->renew))
+		return -EOPNOTSUPP;
+	if (rung == LINK_CHIP_RESET)
+		err = adapter->kind->renew(adapter);
+	adapter->lost |= rung == LINK_BUS_RESET;
+	if (!err)
+		err = adapter_run(base, &reset);
+	return err == -EHOSTDOWN ? 0 : err;
+}
+
+void adapter_link_cost(const struct link *link, struct link_cost *cost)
+{
+	*cost = ((const struct adapter *)((const char *)link - offsetof(struct adapter, link)))
+	                ->cost;
+}
+
+void adapter_trouble(struct link_master *base, bool failed, char *text, size_t size)
+{
+	struct adapter *adapter = (struct adapter *)base;
+	char who[RIVALS_TEXT];
+
+	(void)failed;
+	text[0] = '\0';
+	if (adapter->proc && rivals_find(adapter->proc, adapter->device, who, sizeof(who)))
+		snprintf(text, size,
+		         "%s is also open in %s: two programs on one adapter disturb each other",
+		         adapter->name, who);
+}
+
+unsigned adapter_channels(struct link_master *base)
+{
+	return ((struct adapter *)base)->open;
+}
+
+struct link *adapter_channel(struct link_master *base, unsigned n)
+{
+	return n == 0 ? &((struct adapter *)base)->link : NULL;
+}
+
+void adapter_cost(const struct link_master *base, struct link_master_cost *cost)
+{
+	*cost = ((const struct adapter *)base)->shared;
+}
