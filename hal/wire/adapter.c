@@ -2,8 +2,10 @@
 /* An adapter with one wire: its transactions in pieces, its errors, its rivals. */
 #include <stdio.h>
 
-#include "hal/base/rivals.h"
+#include "hal/base/time.h"
 #include "hal/wire/adapter.h"
+
+#define LOOK_NS (5 * NS_PER_S)
 
 void adapter_init(struct adapter *adapter, const struct adapter_kind *kind,
                   const struct link_master_ops *ops, const struct bus_env *env)
@@ -103,17 +105,22 @@ void adapter_link_cost(const struct link *link, struct link_cost *cost)
 	                ->cost;
 }
 
+/* A look goes through the descriptors of all processes: some thousand calls. */
 void adapter_trouble(struct link_master *base, bool failed, char *text, size_t size)
 {
 	struct adapter *adapter = (struct adapter *)base;
-	char who[RIVALS_TEXT];
+	int64_t now_ns = bus_now(base->env);
 
-	(void)failed;
+	if (adapter->proc && (!failed || now_ns >= adapter->look_ns)) {
+		adapter->look_ns = now_ns + LOOK_NS;
+		(void)rivals_find(adapter->proc, adapter->device, adapter->rivals,
+		                  sizeof(adapter->rivals));
+	}
 	text[0] = '\0';
-	if (adapter->proc && rivals_find(adapter->proc, adapter->device, who, sizeof(who)))
+	if (*adapter->rivals)
 		snprintf(text, size,
 		         "%s is also open in %s: two programs on one adapter disturb each other",
-		         adapter->name, who);
+		         adapter->name, adapter->rivals);
 }
 
 unsigned adapter_channels(struct link_master *base)

@@ -6,6 +6,7 @@
  */
 #pragma once
 
+#include "hal/base/rivals.h"
 #include "hal/wire/link.h"
 
 struct adapter;
@@ -40,9 +41,11 @@ struct adapter {
 	bool strong; /* the strong pull-up may be on */
 	struct link_cost cost;
 	struct link_master_cost shared;
-	char name[ADAPTER_NAME]; /* for messages, as it was opened last */
-	const char *device;      /* its device file */
-	const char *proc;        /* RIVALS_PROC: look who else has it open; NULL: nobody can */
+	char name[ADAPTER_NAME];  /* for messages, as it was opened last */
+	const char *device;       /* its device file */
+	const char *proc;         /* RIVALS_PROC: look who else has it open; NULL: nobody can */
+	char rivals[RIVALS_TEXT]; /* as the last look found them */
+	int64_t look_ns;          /* no error before is worth another one */
 };
 
 static inline struct adapter *adapter_of(struct link *link)
