@@ -14,7 +14,7 @@
 #include "hal/ds2482/power.h"
 #include "hal/native/native.h"
 #include "hal/sim/replay.h"
-#include "hal/trace/tap.h"
+#include "hal/trace/trace.h"
 
 /* Stands in place of the operations of the bus, whose copy it has. */
 struct replay {
@@ -24,7 +24,7 @@ struct replay {
 	const struct bus_env *host;
 	bool execs; /* exec is at work */
 	int64_t now_ns, due_ns;
-	struct trace trace;
+	struct trace *trace;
 	char name[];
 };
 
@@ -112,7 +112,7 @@ static void close_replay(struct link_master *master)
 
 static unsigned replay_channels(struct link_master *master)
 {
-	return trace_link_count((struct trace *)master->env->tap);
+	return trace_links((struct trace *)master->env->tap);
 }
 
 static struct link *replay_channel(struct link_master *master, unsigned n)
@@ -158,7 +158,7 @@ static void replay_destroy(struct bus *bus)
 	struct replay *replay = replay_of(bus);
 
 	replay->inner->destroy(bus);
-	trace_end(&replay->trace);
+	trace_end(replay->trace);
 	free(replay);
 }
 
@@ -205,13 +205,12 @@ static int create_ds2482(const char *where, const struct bus_env *env, struct li
 
 static int create_on(struct replay *replay, struct bus **bus, char *why, size_t why_size)
 {
-	const struct trace *trace = &replay->trace;
-	bool links = trace_link_count(trace);
+	bool links = trace_links(replay->trace);
 
-	if (links || trace->first[TRACE_I2C])
+	if (links || trace_has(replay->trace, TRACE_ADAPTER))
 		return native_create(&replay_bus, links ? &replay_master : &replay_ds2482,
 		                     replay->name, &replay->env, bus, why, why_size);
-	if (!trace->first[TRACE_NET]) {
+	if (!trace_has(replay->trace, TRACE_SERVER)) {
 		snprintf(why, why_size, "%.100s has no line of a wire or a server", replay->name);
 		return -EINVAL;
 	}
@@ -228,6 +227,10 @@ static int replay_create(const char *where, const struct bus_env *env, struct bu
 		return -ENOMEM;
 	memcpy(replay->name, where, strlen(where) + 1);
 	err = trace_replay(&replay->trace, replay->name, why, why_size);
+	if (err) {
+		free(replay);
+		return err == -ENOMEM ? err : -EINVAL;
+	}
 	replay->host = env;
 	replay->now_ns = bus_now(env);
 	replay->due_ns = INT64_MAX;
@@ -236,11 +239,10 @@ static int replay_create(const char *where, const struct bus_env *env, struct bu
 	                               .wait = replay_wait,
 	                               .answer = give_answer,
 	                               .event = give_event,
-	                               .tap = &replay->trace.tap};
-	if (!err)
-		err = create_on(replay, bus, why, why_size);
+	                               .tap = &replay->trace->tap};
+	err = create_on(replay, bus, why, why_size);
 	if (err) {
-		trace_end(&replay->trace);
+		trace_end(replay->trace);
 		free(replay);
 		return err == -ENOMEM ? err : -EINVAL;
 	}

@@ -2,9 +2,9 @@
 /*
  * Links in front of others, which record the calls, and links in place of them, which answer as
  * recorded. What a link has (link_ops, link_facts) stands in the line "link". It makes one
- * transaction after the other (no run_many), so that a replay is asked the same.
+ * transaction after the other (no run_many), so that a replay is asked the same, and each search of
+ * a wire is one call (path), so that its id stands in one line.
  */
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,42 +13,29 @@
 #include "hal/trace/links.h"
 #include "hal/wire/device.h"
 #include "hal/wire/driver.h"
-#include "hal/wire/link.h"
-
-struct trace_link {
-	struct link link; /* first */
-	struct link_ops ops;
-	struct link_facts facts;
-	struct link *under; /* NULL: it is replayed */
-	struct trace *trace;
-	unsigned number;
-	struct trace_link *next;
-};
+#include "hal/wire/search.h"
 
 #define TOLD(link) ((struct trace_link *)(link))
-#define ASK(link, ...) trace_ask(TOLD(link)->trace, (link)->env, TOLD(link)->number, __VA_ARGS__)
-#define SAY(link, ...) trace_add(&TOLD(link)->trace->question, __VA_ARGS__)
-/* Of a recording: what the link below answers to the question; ops: its table that has the call. */
-#define UNDER(link, ops, call, ...) \
-	(TOLD(link)->under ? TOLD(link)->under->ops->call(TOLD(link)->under, __VA_ARGS__) : 0)
+#define CHIP_MAX 255
+#define WORDS_MAX 100
 #define ID(rom) id_text(rom, (char[ROM_TEXT_MAX]){0})
 
 static const char *id_text(const uint8_t *rom, char text[ROM_TEXT_MAX])
 {
-	rom_print(rom, ROM_FIC, text);
+	rom_print(rom, ROM_F_IC, text);
 	return text;
 }
 
-static void say_bytes(struct link *link, const uint8_t *bytes, size_t n)
+static FILE *ask(struct link *link)
 {
-	trace_bytes(&TOLD(link)->trace->question, bytes, n, false);
+	return trace_ask(TOLD(link)->lines, link->env, &TOLD(link)->place);
 }
 
 /* most: as trace_told(). After an error the bytes mean nothing. */
 static int answer(struct link *link, int most, int result, uint8_t *bytes, size_t n)
 {
 	n = result < 0 ? 0 : n;
-	return trace_told(TOLD(link)->trace, most, result, bytes, &n);
+	return trace_told(TOLD(link)->lines, most, result, bytes, &n);
 }
 
 static const char *after_word(enum link_after after)
@@ -56,89 +43,105 @@ static const char *after_word(enum link_after after)
 	return after == LINK_STRONG ? " strong" : "";
 }
 
+/* Of a recording: what the link below answers to the question; ops: its table that has the call. */
+#define UNDER(link, ops, call, ...) \
+	(TOLD(link)->under ? TOLD(link)->under->ops->call(TOLD(link)->under, __VA_ARGS__) : 0)
+
+/* The ids in it stand apart: that of a chip that is selected, and one that is read. */
 static int told_run(struct link *link, const struct link_part *part)
 {
-	ASK(link, part->reset ? "run r " : "run - ");
-	say_bytes(link, part->out, part->out_n);
-	SAY(link, " %zu%s", part->in_n, after_word(part->after));
+	const uint8_t *out = part->out, first = part->reset && part->out_n ? out[0] : 0;
+	size_t n = part->out_n;
+	FILE *now = ask(link);
+
+	fprintf(now, "run %c ", part->reset ? 'r' : '-');
+	if (n >= 9 && (first == 0x55 || first == 0x69)) {
+		fprintf(now, "%02X %s ", first, ID(out + 1));
+		out += 9;
+		n -= 9;
+	}
+	trace_bytes(now, out, n, TRACE_HEX);
+	fprintf(now, " %zu%s", part->in_n, after_word(part->after));
+	if (part->out_n == 1 && (first == 0x33 || first == 0x0f))
+		TOLD(link)->lines->form = TRACE_IDS;
 	return answer(link, 0, UNDER(link, ops, run, part), part->in, part->in_n);
 }
 
 static int told_recover(struct link *link, enum link_rung rung)
 {
-	ASK(link, "recover %d", (int)rung);
+	fprintf(ask(link), "recover %d", (int)rung);
 	return answer(link, 0, UNDER(link, ops, recover, rung), NULL, 0);
 }
 
 static int told_slot(struct link *link, bool out, enum link_after after)
 {
-	ASK(link, "slot %d%s", out, after_word(after));
+	fprintf(ask(link), "slot %d%s", out, after_word(after));
 	return answer(link, 1, UNDER(link, ops, slot, out, after), NULL, 0);
 }
 
-/* What is taken says which direction was asked for, where it counts: see anonymous.c. */
-static int told_triplet(struct link *link, bool direction)
-{
-	struct trace *trace = TOLD(link)->trace;
-	int bits;
-
-	ASK(link, "triplet");
-	trace->directions[0] = direction;
-	trace->direction_n = 1;
-	bits = UNDER(link, ops, triplet, direction);
-	return answer(link, 7, bits >= 0 && (bits & 3) == 3 ? 7 : bits, NULL, 0);
-}
-
+/*
+ * The answer is the id, and it with all bits turned where devices differ. Directions are recorded
+ * nowhere else: those of a search that begins are zeros, and would show how an id is changed.
+ */
 static int told_path(struct link *link, bool reset, uint8_t command, uint8_t rom[8],
                      uint8_t conflict[8])
 {
-	struct trace *trace = TOLD(link)->trace;
+	struct trace_link *told = TOLD(link);
 	uint8_t both[16] = {0};
-	int err;
+	int err = 0;
 
-	ASK(link, "path %c %02X", reset ? 'r' : '-', command);
-	memcpy(trace->directions, rom, 8);
-	trace->direction_n = 8;
-	memcpy(both, rom, 8);
-	err = UNDER(link, ops, path, reset, command, both, both + 8);
+	fprintf(ask(link), "path %c %02X", reset ? 'r' : '-', command);
+	told->lines->form = TRACE_IDS;
+	told->lines->directions = rom;
+	if (told->under)
+		err = search_path(told->under, reset, command, rom, conflict);
+	for (int i = 0; told->under && i < 8; i++) {
+		both[i] = rom[i];
+		both[i + 8] = rom[i] ^ conflict[i];
+	}
 	err = answer(link, 0, err, both, sizeof(both));
-	memcpy(rom, both, 8);
-	memcpy(conflict, both + 8, 8);
+	for (int i = 0; i < 8; i++) {
+		rom[i] = both[i];
+		conflict[i] = both[i] ^ both[i + 8];
+	}
 	return err;
 }
 
 struct found {
-	struct trace *trace;
-	link_found *found;
-	void *ctx;
+	uint8_t rom[DEVICE_MAX * 8];
+	size_t n;
 };
 
 static int note_found(void *ctx, const uint8_t rom[8])
 {
 	struct found *all = ctx;
 
-	trace_bytes(&all->trace->answer, rom, 8, false);
-	return all->found(all->ctx, rom);
+	if (all->n == sizeof(all->rom))
+		return -ENOSPC;
+	memcpy(all->rom + all->n, rom, 8);
+	all->n += 8;
+	return 0;
 }
 
 static int told_search(struct link *link, bool alarm, uint8_t family, link_found *found, void *ctx)
 {
-	struct found all = {TOLD(link)->trace, found, ctx};
-	uint8_t roms[DEVICE_MAX * 8];
-	size_t n = TOLD(link)->under ? 0 : sizeof(roms);
-	int result, err;
+	struct lines *lines = TOLD(link)->lines;
+	struct found all = {.n = 0};
+	int err, result = 0;
 
-	ASK(link, "search %s %02X", alarm ? "alarm" : "all", family);
-	result = UNDER(link, ops, search, alarm, family, note_found, &all);
-	err = trace_told(all.trace, INT_MAX, result, roms, &n);
-	for (size_t i = 0; i + 8 <= n && !result; i += 8)
-		result = found(ctx, roms + i);
+	fprintf(ask(link), "search %s %02X", alarm ? "alarm" : "all", family);
+	lines->form = TRACE_IDS;
+	err = UNDER(link, ops, search, alarm, family, note_found, &all);
+	all.n = TOLD(link)->under ? all.n : sizeof(all.rom);
+	err = trace_told(lines, 0, err, all.rom, &all.n);
+	for (size_t i = 0; i + 8 <= all.n && !result; i += 8)
+		result = found(ctx, all.rom + i);
 	return err < 0 ? err : result;
 }
 
 static int told_verify(struct link *link, const uint8_t rom[8], bool alarm)
 {
-	ASK(link, "verify %s %s", alarm ? "alarm" : "all", ID(rom));
+	fprintf(ask(link), "verify %s %s", alarm ? "alarm" : "all", ID(rom));
 	return answer(link, 1, UNDER(link, ops, verify, rom, alarm), NULL, 0);
 }
 
@@ -146,35 +149,36 @@ static int told_verify(struct link *link, const uint8_t rom[8], bool alarm)
 
 static bool told_has(struct link *link, const uint8_t rom[8])
 {
-	ASK(link, "has %s", ID(rom));
+	fprintf(ask(link), "has %s", ID(rom));
 	return answer(link, 1, UNDER(link, driver, has, rom), NULL, 0) > 0;
 }
 
 static bool told_offers(struct link *link, const uint8_t rom[8], const char *property, int element)
 {
-	ASK(link, "offers %s %d %s", property, element, ID(rom));
+	fprintf(ask(link), "offers %s %d %s", property, element, ID(rom));
 	return answer(link, 1, UNDER(link, driver, offers, rom, property, element), NULL, 0) > 0;
 }
 
 static int told_area_read(struct link *link, const uint8_t rom[8], const struct area *area,
                           unsigned at, uint8_t *bytes, unsigned n)
 {
-	ASK(link, "area %s %u %u %s", area->name, at, n, ID(rom));
+	fprintf(ask(link), "area %s %u %u %s", area->name, at, n, ID(rom));
 	return answer(link, 0, UNDER(link, driver, area_read, rom, area, at, bytes, n), bytes, n);
 }
 
 static int told_area_write(struct link *link, const uint8_t rom[8], const struct area *area,
                            unsigned at, const uint8_t *bytes, unsigned n)
 {
-	ASK(link, "write %s %u ", area->name, at);
-	say_bytes(link, bytes, n);
-	SAY(link, " %s", ID(rom));
+	FILE *now = ask(link);
+
+	fprintf(now, "write %s %u %s ", area->name, at, ID(rom));
+	trace_bytes(now, bytes, n, TRACE_HEX);
 	return answer(link, 0, UNDER(link, driver, area_write, rom, area, at, bytes, n), NULL, 0);
 }
 
 static int told_convert(struct link *link, const uint8_t *rom, const char *what)
 {
-	ASK(link, "convert %s %s", what, rom ? ID(rom) : "-");
+	fprintf(ask(link), "convert %s %s", what, rom ? ID(rom) : "-");
 	return answer(link, 0, UNDER(link, driver, convert, rom, what), NULL, 0);
 }
 
@@ -193,81 +197,58 @@ static const struct driver_ops told_driver = {
 	X(splits, facts.splits, true) \
 	X(recover, ops.recover, told_recover) \
 	X(slot, ops.slot, told_slot) \
-	X(triplet, ops.triplet, told_triplet) \
 	X(path, ops.path, told_path) \
 	X(search, ops.search, told_search) \
 	X(verify, ops.verify, told_verify) \
 	X(driver, link.driver, &told_driver)
 
-static void record_link(struct trace_link *told, struct link *under)
+/* The result is the number of the chip. */
+static void take_words(struct trace_link *told, const struct trace_link *like)
 {
-	const struct trace_link like = {.link = *under, .ops = *under->ops, .facts = *under->facts};
+	char words[WORDS_MAX] = "";
+	size_t n = 0;
 
-	told->ops.name = under->ops->name;
-	told->link.chip = under->chip;
-	ASK(&told->link, "link %u", under->chip);
 #define X(word, member, mine) \
-	if (like.member) { \
-		SAY(told, " " #word); \
-		told->member = mine; \
-	}
+	if (like->member) \
+		n += (size_t)sprintf(words + n, " " #word);
 	WORDS(X)
 #undef X
-	answer(&told->link, 0, 0, NULL, 0);
-	told->under = under;
-}
-
-static void replay_link(struct trace_link *told)
-{
-	size_t first = told->trace->first[told->number];
-	const char *question = told->trace->line[first - 1].question;
-
-	told->ops.name = "replay";
-	told->link.chip = (unsigned)strtoul(question + 5, NULL, 10);
+	fputs("link", ask(&told->link));
+	told->lines->form = TRACE_TEXT;
+	n = told->lines->trace.file ? n : sizeof(words) - 1;
+	told->link.chip = (unsigned)trace_told(told->lines, CHIP_MAX, (int)like->link.chip,
+	                                       (uint8_t *)words, &n);
+	words[n] = '\0';
 #define X(word, member, mine) \
-	if (strstr(question, " " #word)) \
+	if (strstr(words, " " #word)) \
 		told->member = mine;
 	WORDS(X)
 #undef X
-	/* The line of the link is no call */
-	told->trace->last[told->number] = first;
 }
 
 struct link *trace_link_of(struct tap *tap, unsigned n, struct link *link)
 {
-	struct trace *trace = (struct trace *)tap;
-	struct trace_link *told = trace->links;
+	struct lines *lines = (struct lines *)tap;
+	struct trace_link *told, like = {.ops.name = "replay"};
 
-	if (n >= (trace->file ? TRACE_NET : trace_link_count(trace)))
+	if (n >= TRACE_LINKS)
 		return link;
-	while (told && told->number != n)
-		told = told->next;
-	if (!told) {
-		told = calloc(1, sizeof(*told));
-		if (!told)
-			return link;
-		told->next = trace->links;
-		trace->links = told;
-	}
+	told = &lines->link[n];
+	if (lines->trace.file)
+		like = (struct trace_link){
+			.link = *link, .ops = *link->ops, .facts = *link->facts, .under = link};
+	/* Searches made of single slots would show ids bit by bit */
+	if (!like.ops.search && (like.ops.triplet || like.ops.slot))
+		like.ops.path = told_path;
 	*told = (struct trace_link){.link.env = link->env,
 	                            .link.ops = &told->ops,
 	                            .link.facts = &told->facts,
+	                            .ops.name = like.ops.name,
 	                            .ops.run = told_run,
-	                            .trace = trace,
-	                            .number = n,
-	                            .next = told->next};
-	if (trace->file)
-		record_link(told, link);
-	else
-		replay_link(told);
+	                            .under = like.under,
+	                            .lines = lines,
+	                            .place.last = told->place.last};
+	snprintf(told->place.name, sizeof(told->place.name), "%u", n);
+	take_words(told, &like);
 	return &told->link;
-}
-
-void trace_links_free(struct trace *trace)
-{
-	for (struct trace_link *told = trace->links, *next; told; told = next) {
-		next = told->next;
-		free(told);
-	}
-	trace->links = NULL;
 }

@@ -46,6 +46,28 @@ static void set_rom_bit(uint8_t rom[8], unsigned position, bool value)
 	                                          : rom[(position - 1) / 8] & ~mask);
 }
 
+int search_path(struct link *link, bool reset, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
+{
+	const struct link_part part = {.reset = reset, .out = &command, .out_n = 1};
+	int err;
+
+	if (link->ops->path)
+		return link->ops->path(link_wire(link), reset, command, rom, conflict);
+	err = link->ops->run(link, &part);
+	memset(conflict, 0, 8);
+	for (unsigned position = 1; !err && position <= 64; position++) {
+		int bits = triplet(link, rom_bit(rom, position));
+
+		if (bits < 0)
+			return bits;
+		if ((bits & 3) == 3)
+			return position == 1 ? -EHOSTDOWN : -EBADMSG;
+		set_rom_bit(rom, position, bits >> 2 & 1);
+		set_rom_bit(conflict, position, (bits & 3) == 0);
+	}
+	return err;
+}
+
 /* The direction at a branch: as last time before the deepest untried one, 1 there, 0 behind. */
 static bool direction_at(const struct search *search, unsigned position)
 {

@@ -26,6 +26,9 @@ struct search {
 	void *ctx;
 };
 
+/* As link_ops.path, also where the link has none. */
+int search_path(struct link *link, bool reset, uint8_t command, uint8_t rom[8],
+                uint8_t conflict[8]);
 /* Are the first bits of two ids the same? */
 bool search_same(const uint8_t a[8], const uint8_t b[8], unsigned bits);
 /* How many of their first bits are the same: up to 64. */

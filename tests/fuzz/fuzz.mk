@@ -26,7 +26,7 @@ FUZZ_WITH_w1       := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_netlink  := fuzz/bus_host.o fuzz/sysfs.o
 FUZZ_WITH_scenario := fuzz/bus_host.o $(SIM_TABLE:%.c=%.o)
 FUZZ_WITH_trace    := fuzz/bus_host.o $(SIM_TABLE:%.c=%.o)
-FUZZ_WORDS_trace   := hal/trace/trace.c hal/trace/links.c hal/trace/i2c.c
+FUZZ_WORDS_trace   := hal/trace/trace.c hal/trace/lines.c hal/trace/links.c hal/trace/i2c.c
 FUZZ_WORDS_scenario := $(wildcard hal/sim/*.c hal/sim/chips/*.c)
 FUZZ_WITH_owsctl   := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o fuzz/json_valid.o
 FUZZ_WITH_sparkplug := fuzz/heap_instance.o fuzz/heap_map.o fuzz/heap_give.o

@@ -434,10 +434,11 @@ def trace():
     for file in sorted((HERE.parent / "traces").glob("*.trace")):
         lines = file.read_text().splitlines(keepends=True)[1:120]
         put("trace", file.stem, "".join(lines))
-    put("trace", "hostile", "0 1 0 link 0 strong splits slot path search verify driver\n> > 1\n"
-        "nan nan 0 slot 1 > 9999999999\n0 1e99 0 run r - 9 > 0 12\n0 0 7 link 9 triplet > 0\n"
-        "0 0 0 search all 00 > 1 28000000000001AE\n0 0 0 has 28000000000001AE > 1\n"
-        "0 0 i2c adapter > -1\n0 0 net sent \"\\00\" > !EIO \"\\0\n#\n")
+    put("trace", "hostile", "0 1 0: link > \" strong splits slot path search verify driver\"\n> > 1\n"
+        "nan nan 0: slot 1 > =9999999999\n0 1e99 0: run r - 9 > 12\n0 0 7: link > 9 \" path\"\n"
+        "0 0 0: search all 00 > 28.000000000001AE\n0 0 0: has 28.000000000001AE > =1\n"
+        "0 0 0: path r F0 > 28.000000000001AE29.00\n"
+        "0 0 i2c: adapter > =-1\n0 0 net: sent 00 > \"0 !EIO\n#\n")
 
 
 if __name__ == "__main__":

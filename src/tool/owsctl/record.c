@@ -4,18 +4,14 @@
  * where ids are made anonymous the file is written at the end, as all ids have to be known.
  */
 #include <errno.h>
-#include <fcntl.h>
 #include <getopt.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <unistd.h>
 
 #include "hal/base/time.h"
 #include "hal/bus/backends.h"
-#include "hal/trace/anonymous.h"
-#include "hal/trace/tap.h"
+#include "hal/trace/trace.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/verbs.h"
 
@@ -29,100 +25,42 @@ static void interrupt(int signal)
 	interrupted = true;
 }
 
-struct recording {
-	struct trace trace; /* first */
-	FILE *file;         /* that of the user */
-	char *text;         /* what is to be made anonymous */
-	size_t len;
-	bool anonymous, i2c;
-	int64_t until_ns, shown_ns;
-};
-
 /* On a terminal, how far it is. */
 static void show_progress(const struct trace *trace)
 {
-	struct recording *recording = (struct recording *)(uintptr_t)trace;
+	static int64_t shown_ns;
 	int64_t now_ns = ows_now();
 
-	if (now_ns - recording->shown_ns < SHOWN_NS || !isatty(STDERR_FILENO))
+	if (now_ns - shown_ns < SHOWN_NS || !isatty(STDERR_FILENO))
 		return;
-	recording->shown_ns = now_ns;
-	fprintf(stderr, "\rrecording: %u lines, %zu KiB, %.1f s\033[K", trace->lines,
-	        (TRACE_MOST / 2 - trace->left) / 1024, (double)(now_ns - trace->since_ns) / 1e9);
-}
-
-static int open_recording(struct recording *recording, const char *name)
-{
-	int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOCTTY, 0666);
-	FILE *file;
-
-	if (fd < 0 && errno == EEXIST)
-		return ctl_fail("%s is there already: name a new file", ctl_word(name));
-	recording->file = fd < 0 ? NULL : fdopen(fd, "w");
-	if (!recording->file)
-		return ctl_fail("%s: %s", ctl_word(name), strerror(errno));
-	file = recording->anonymous ? open_memstream(&recording->text, &recording->len)
-	                            : recording->file;
-	if (!file)
-		return ctl_fail("no memory");
-	setvbuf(recording->file, NULL, _IOLBF, BUFSIZ);
-	trace_record(&recording->trace, file, recording->i2c);
-	recording->trace.progress = show_progress;
-	return CTL_DONE;
+	shown_ns = now_ns;
+	fprintf(stderr, "\rrecording: %u lines, %zu KiB, %.1f s\033[K\r", trace->lines,
+	        (TRACE_MOST - trace->left) / 1024, (double)(now_ns - trace->since_ns) / 1e9);
 }
 
 /* A remark; with the target's kind alone where its address is to be hidden. */
-static void write_command(const struct recording *recording, const struct ctl *ctl, int argc,
-                          char **argv)
+static void write_command(FILE *file, const struct ctl *ctl, bool anonymous, char **argv)
 {
 	const char *where, *target = ctl->target ? ctl->target : "owserver";
-	FILE *file = recording->trace.file;
 
-	if (recording->anonymous && strcmp(target, "auto") != 0)
+	if (anonymous && strcmp(target, "auto") != 0)
 		target = bus_backend(target, &where)->scheme;
 	fprintf(file, "# owsctl " OWSD_VERSION " -t %s", target);
-	for (int i = 0; i < argc; i++) {
+	for (; *argv; argv++) {
 		fputc(' ', file);
-		for (const char *c = argv[i]; *c; c++)
+		for (const char *c = *argv; *c; c++)
 			fputc((unsigned char)*c < ' ' ? '?' : *c, file);
 	}
 	fputc('\n', file);
 }
 
-static int close_recording(struct recording *recording, const char *name)
-{
-	uint8_t mask[TRACE_MASK];
-	bool failed = false;
-
-	trace_end(&recording->trace);
-	if (recording->anonymous) {
-		failed = fclose(recording->trace.file) ||
-		         getrandom(mask, sizeof(mask), 0) != sizeof(mask);
-		if (!failed) {
-			trace_anonymous(recording->text, mask);
-			fputs(recording->text, recording->file);
-		}
-		free(recording->text);
-	}
-	failed |= ferror(recording->file) || fclose(recording->file);
-	if (recording->shown_ns)
-		fputs("\r\033[K", stderr);
-	if (failed)
-		return ctl_fail("%s: cannot be written", name);
-	if (!recording->trace.lines && !unlink(name))
-		return ctl_fail("nothing went over a wire: there is no %s", name);
-	ctl_tell("%s has %u lines%s%s", name, recording->trace.lines,
-	         recording->anonymous ? ", without your ids" : "",
-	         recording->trace.left ? "" : "; it is full: what followed is left out");
-	return CTL_DONE;
-}
-
 /* The verb, once or until the time is over; what it prints the first time alone. */
-static int record_verb(struct recording *recording, struct ctl *ctl, int argc, char **argv)
+static int record_verb(const struct trace *trace, int64_t until_ns, struct ctl *ctl, int argc,
+                       char **argv)
 {
 	int status = ctl_run(ctl, argc, argv);
 
-	while (!interrupted && recording->trace.left && ows_now() < recording->until_ns) {
+	while (!interrupted && trace->left && ows_now() < until_ns) {
 		if (!freopen("/dev/null", "w", stdout))
 			break;
 		int again = ctl_run(ctl, argc, argv);
@@ -134,24 +72,40 @@ static int record_verb(struct recording *recording, struct ctl *ctl, int argc, c
 	return status;
 }
 
+static int end_recording(struct trace *trace, FILE *file, const char *name, bool anonymous)
+{
+	bool is_full = !trace->left;
+	int lines = trace_end(trace);
+
+	if (isatty(STDERR_FILENO))
+		fputs("\033[K", stderr);
+	if (ferror(file) || fclose(file) || lines < 0)
+		return ctl_fail("%s: cannot be written", name);
+	if (!lines && !unlink(name))
+		return ctl_fail("nothing went over a wire: there is no %s", name);
+	ctl_tell("%s has %d lines%s%s", name, lines, anonymous ? ", without your ids" : "",
+	         is_full ? "; it is full: what followed is left out" : "");
+	return CTL_DONE;
+}
+
 int verb_record(struct ctl *ctl, int argc, char **argv)
 {
 	static char word[] = "scan", *scan[] = {word, NULL};
-	static struct recording recording; /* too large for a stack */
+	bool anonymous = false, i2c = false;
+	int64_t until_ns = 0;
+	struct trace *trace;
 	const char *name;
+	FILE *file;
 	int c, status;
 
-	memset(&recording, 0, sizeof(recording));
 	while ((c = ctl_option(ctl, argc, argv, "+NQE:")) != -1)
-		if (c == 'N')
-			recording.anonymous = true;
-		else if (c == 'Q')
-			recording.i2c = true;
+		if (c == 'E')
+			until_ns = ows_now() + ctl_option_seconds(ctl, c);
 		else
-			recording.until_ns = ows_now() + ctl_option_seconds(ctl, c);
+			*(c == 'N' ? &anonymous : &i2c) = true;
 	if (optind == argc)
 		return ctl_usage(ctl, "record to which file?");
-	if (recording.i2c && recording.anonymous)
+	if (i2c && anonymous)
 		return ctl_usage(ctl, "--i2c shows ids byte by byte: leave it out or --anonymous");
 	name = argv[optind++];
 	argc -= optind;
@@ -165,16 +119,21 @@ int verb_record(struct ctl *ctl, int argc, char **argv)
 	for (int i = 1; i < argc; i++)
 		if (argv[i][0] == '-' && argv[i][1] != '-' && strchr(argv[i], 't'))
 			return ctl_usage(ctl, "-t stands before the file");
-	status = open_recording(&recording, name);
-	if (status)
-		return status;
-	write_command(&recording, ctl, argc, argv);
-	ctl->tap = &recording.trace.tap;
+	file = fopen(name, "wxe");
+	if (!file && errno == EEXIST)
+		return ctl_fail("%s is there already: name a new file", ctl_word(name));
+	if (!file)
+		return ctl_fail("%s: %s", ctl_word(name), strerror(errno));
+	setvbuf(file, NULL, _IOLBF, BUFSIZ);
+	trace = ctl_need(trace_record(file, i2c, anonymous));
+	trace->progress = show_progress;
+	write_command(trace->file, ctl, anonymous, argv);
+	ctl->tap = &trace->tap;
 	ctl->verb = verb;
 	sigaction(SIGINT,
 	          &(struct sigaction){.sa_handler = interrupt, .sa_flags = (int)SA_RESETHAND},
 	          NULL);
-	status = record_verb(&recording, ctl, argc, argv);
-	c = close_recording(&recording, name);
+	status = record_verb(trace, until_ns, ctl, argc, argv);
+	c = end_recording(trace, file, name, anonymous);
 	return status ? status : c;
 }

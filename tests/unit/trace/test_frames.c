@@ -7,11 +7,11 @@
 #include "unity.h"
 
 #include "hal/sim/replay.h"
-#include "hal/trace/tap.h"
+#include "hal/trace/trace.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/owserver_scene.h"
 
-static struct trace trace;
+static struct trace *trace;
 static char *text, file[300];
 static size_t len;
 static FILE *out;
@@ -21,8 +21,8 @@ void setUp(void)
 	owserver_begin();
 	snprintf(file, sizeof(file), "%s", folder_file("it", "trace"));
 	out = open_memstream(&text, &len);
-	trace_record(&trace, out, false);
-	host.env.tap = &trace.tap;
+	trace = trace_record(out, false, false);
+	host.env.tap = &trace->tap;
 }
 
 void tearDown(void)
@@ -39,7 +39,7 @@ static void replay(void)
 
 	one_bus_end();
 	stop_peer();
-	trace_end(&trace);
+	trace_end(trace);
 	fclose(out);
 	made = fopen(file, "w");
 	fputs(text, made);
@@ -86,15 +86,15 @@ static void test_a_server_that_never_ends_fills_no_file(void)
 {
 	static const uint8_t bytes[4096];
 
-	trace.tap.sent(&trace.tap, &host.env, bytes, 1);
+	trace->tap.sent(&trace->tap, &host.env, bytes, 1);
 	for (size_t i = 0; i < TRACE_MOST / sizeof(bytes); i++)
-		trace.tap.received(&trace.tap, &host.env, bytes, sizeof(bytes));
-	trace.tap.sent(&trace.tap, &host.env, bytes, 1);
-	TEST_ASSERT_EQUAL_size_t(0, trace.left);
+		trace->tap.received(&trace->tap, &host.env, bytes, sizeof(bytes));
+	trace->tap.sent(&trace->tap, &host.env, bytes, 1);
+	TEST_ASSERT_EQUAL_size_t(0, trace->left);
 	fflush(out);
 	TEST_ASSERT_LESS_THAN_size_t(100, len);
 	TEST_ASSERT_NOT_NULL(strstr(text, "# it is full"));
-	trace_end(&trace);
+	trace_end(trace);
 	fclose(out);
 }
 

@@ -9,13 +9,13 @@
 #include "hal/ds2482/i2c.h"
 #include "hal/sim/bus.h"
 #include "hal/sim/replay.h"
-#include "hal/trace/tap.h"
+#include "hal/trace/trace.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/one_bus.h"
 
 #define SENSOR "/28.A10000000000/temperature"
 
-static struct trace trace;
+static struct trace *trace;
 static char *text, file[300], room[300];
 static size_t len;
 
@@ -75,13 +75,13 @@ static void record(const char *combine)
 	         "DS18B20 28.A10000000000 as t temperature 21.5\n",
 	         combine);
 	put(scenario);
-	trace_record(&trace, out, true);
-	host.env.tap = &trace.tap;
+	trace = trace_record(out, true, false);
+	host.env.tap = &trace->tap;
 	open_bus(&sim_bus);
 	TEST_ASSERT_EQUAL_INT32(0, read_sensor());
 	TEST_ASSERT_EQUAL_STRING("        21.5", room);
 	one_bus_end();
-	trace_end(&trace);
+	trace_end(trace);
 	fclose(out);
 }
 
@@ -91,7 +91,7 @@ static void test_the_driver_reads_the_same_of_a_replay(void)
 
 	for (size_t i = 0; i < sizeof(combine) / sizeof(combine[0]); i++) {
 		record(combine[i]);
-		TEST_ASSERT_NOT_NULL(strstr(text, " i2c claim 1A > 0\n"));
+		TEST_ASSERT_NOT_NULL(strstr(text, " i2c: claim 1A >\n"));
 		TEST_ASSERT_NULL(strstr(text, " run "));
 		put(text);
 		host_init_virtual(&host);
@@ -108,18 +108,18 @@ static void test_the_driver_reads_the_same_of_a_replay(void)
 /* The driver trusts what an adapter says of itself. */
 static void test_an_adapter_that_there_cannot_be_combines_nothing(void)
 {
-	static const char *const can[] = {"-1", "2147483647", "!EIO", ""};
+	static const char *const can[] = {"=-1", "=2147483647", "!EIO", ""};
 	char content[100], why[100];
 
 	for (size_t i = 0; i < sizeof(can) / sizeof(can[0]); i++) {
-		snprintf(content, sizeof(content), TRACE_BEGIN "0 0 i2c adapter > %s\n", can[i]);
+		snprintf(content, sizeof(content), TRACE_BEGIN "0 0 i2c: adapter > %s\n", can[i]);
 		put(content);
 		TEST_ASSERT_EQUAL_INT(0, trace_replay(&trace, file, why, sizeof(why)));
-		struct i2c_adapter *adapter = trace.tap.adapter(&trace.tap, &host.env, NULL);
+		struct i2c_adapter *adapter = trace->tap.adapter(&trace->tap, &host.env, NULL);
 		TEST_ASSERT_EQUAL_INT(I2C_SMBUS_ONLY, adapter->combine);
 		TEST_ASSERT_EQUAL_UINT(0, adapter->max_messages);
 		adapter->ops->close(adapter);
-		trace_end(&trace);
+		trace_end(trace);
 	}
 }
 

@@ -8,8 +8,7 @@
 #include "unity.h"
 
 #include "hal/chips/area.h"
-#include "hal/trace/links.h"
-#include "hal/trace/tap.h"
+#include "hal/trace/trace.h"
 #include "hal/wire/driver.h"
 #include "tests/unit/aid/folder.h"
 #include "tests/unit/aid/host.h"
@@ -17,7 +16,7 @@
 static const uint8_t one[8] = {0x28, 1, 2, 3, 4, 5, 6, 0x2a}, two[8] = {0x28, 9, 2, 3, 4, 5, 6, 7};
 static const struct area pad = {.name = "scratchpad", .size = 9};
 static struct host host;
-static struct trace trace;
+static struct trace *trace;
 static char *text, file[300];
 static size_t len;
 static unsigned calls;
@@ -44,13 +43,6 @@ static int slot(struct link *link, bool out, enum link_after after)
 	(void)link;
 	calls++;
 	return out && after == LINK_STRONG;
-}
-
-static int triplet(struct link *link, bool direction)
-{
-	(void)link;
-	calls++;
-	return direction << 2;
 }
 
 static int path(struct link *link, bool reset, uint8_t command, uint8_t rom[8], uint8_t conflict[8])
@@ -126,7 +118,6 @@ static const struct link_ops ops = {.name = "all",
                                     .run = run,
                                     .recover = recover,
                                     .slot = slot,
-                                    .triplet = triplet,
                                     .path = path,
                                     .search = search,
                                     .verify = verify};
@@ -148,7 +139,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-	trace_end(&trace);
+	trace_end(trace);
 	free(text);
 	text = NULL;
 }
@@ -184,7 +175,6 @@ static void call_all(struct link *link, char *said)
 	                link->ops->recover(link, LINK_POWER_CYCLE));
 	said += sprintf(said, "slot %d %d ", link->ops->slot(link, true, LINK_STRONG),
 	                link->ops->slot(link, false, LINK_IDLE));
-	said += sprintf(said, "triplet %d ", link->ops->triplet(link, true));
 	said += sprintf(said, "path %d", link->ops->path(link, true, 0xf0, rom, conflict));
 	said += sprintf(said, " %02X%02X ", rom[1], conflict[1]);
 	memset(rom, 0, 8);
@@ -215,9 +205,9 @@ static void record_all(char *said)
 {
 	FILE *out = open_memstream(&text, &len);
 
-	trace_record(&trace, out, false);
-	call_all(trace.tap.link(&trace.tap, 0, &wire), said);
-	trace_end(&trace);
+	trace = trace_record(out, false, false);
+	call_all(trace->tap.link(&trace->tap, 0, &wire), said);
+	trace_end(trace);
 	fclose(out);
 }
 
@@ -241,8 +231,8 @@ static void test_each_call_is_answered_as_it_was(void)
 	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(before, "found 2801 found 2809"), before);
 	begin_replay();
 	calls = 0;
-	TEST_ASSERT_EQUAL_UINT(1, trace_link_count(&trace));
-	call_all(trace.tap.link(&trace.tap, 0, &none), after);
+	TEST_ASSERT_EQUAL_UINT(1, trace_links(trace));
+	call_all(trace->tap.link(&trace->tap, 0, &none), after);
 	TEST_ASSERT_EQUAL_STRING(before, after);
 	TEST_ASSERT_EQUAL_UINT(0, calls);
 	TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_NOTE));
@@ -256,7 +246,7 @@ static void test_a_call_takes_the_time_that_it_took(void)
 
 	record_all(said);
 	begin_replay();
-	struct link *link = trace.tap.link(&trace.tap, 0, &none);
+	struct link *link = trace->tap.link(&trace->tap, 0, &none);
 	begun = host.now;
 	call_all(link, said);
 	TEST_ASSERT_EQUAL_INT64(2 * HOST_MS, host.now - begun);
@@ -269,11 +259,12 @@ static void test_a_link_has_what_its_line_says(void)
 	uint8_t in[4] = {0};
 	const struct link_part part = {.reset = true, .in = in, .in_n = 4};
 
-	text = strdup(TRACE_BEGIN "0 0 0 link 1 splits slot > 0\n0 0 0 run r - 4 > 0 11\n");
+	text = strdup(TRACE_BEGIN "0 0 0: link > \" splits slot\" =1\n0 0 0: run r - 4 > 11\n");
 	begin_replay();
-	struct link *link = trace.tap.link(&trace.tap, 0, &none);
+	struct link *link = trace->tap.link(&trace->tap, 0, &none);
 	TEST_ASSERT_NULL(link->driver);
-	TEST_ASSERT_NULL(link->ops->triplet);
+	TEST_ASSERT_EQUAL_UINT(1, link->chip);
+	TEST_ASSERT_NULL(link->ops->path);
 	TEST_ASSERT_NULL(link->ops->recover);
 	TEST_ASSERT_NOT_NULL(link->ops->slot);
 	TEST_ASSERT_TRUE(link->facts->splits);
@@ -282,7 +273,6 @@ static void test_a_link_has_what_its_line_says(void)
 	TEST_ASSERT_EQUAL_HEX8(0x11, in[0]);
 	TEST_ASSERT_EQUAL_HEX8(0xff, in[3]);
 	TEST_ASSERT_EQUAL_INT(-EHOSTDOWN, link->ops->slot(link, true, LINK_IDLE));
-	TEST_ASSERT_EQUAL_PTR(&none, trace.tap.link(&trace.tap, 1, &none));
 }
 
 /* What a call cannot return by link.h is an error of the wire. */
@@ -290,26 +280,54 @@ static void test_a_result_is_one_that_its_call_can_have(void)
 {
 	struct link none = {.env = &host.env};
 	const struct link_part part = {.reset = true};
+	uint8_t rom[8] = {0}, conflict[8];
 
-	text = strdup(TRACE_BEGIN "0 0 0 link 0 slot triplet verify recover > 0\n"
-	                          "0 0 0 run r - 0 > 5\n"
-	                          "0 0 0 run r - 0 > -9999\n"
-	                          "0 0 0 run r - 0 > !EWHATEVER\n"
-	                          "0 0 0 run r - 0 > !EADDRINUSE\n"
-	                          "0 0 0 slot 1 > 2\n"
-	                          "0 0 0 triplet > 8\n"
-	                          "0 0 0 verify all 2801020304050\n"
-	                          "0 0 0 recover 1 > 99999999999\n");
+	text = strdup(TRACE_BEGIN "0 0 0: link > \" slot path verify recover\"\n"
+	                          "0 0 0: run r - 0 > =5\n"
+	                          "0 0 0: run r - 0 > =-9999\n"
+	                          "0 0 0: run r - 0 > !EWHATEVER\n"
+	                          "0 0 0: run r - 0 > !EADDRINUSE\n"
+	                          "0 0 0: slot 1 > =2\n"
+	                          "0 0 0: path r F0 > =1\n"
+	                          "0 0 0: verify all 28.01020304050\n"
+	                          "0 0 0: recover 1 > =99999999999\n");
 	begin_replay();
-	struct link *link = trace.tap.link(&trace.tap, 0, &none);
+	struct link *link = trace->tap.link(&trace->tap, 0, &none);
 	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->run(link, &part));
 	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->run(link, &part));
 	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->run(link, &part));
 	TEST_ASSERT_EQUAL_INT(-EADDRINUSE, link->ops->run(link, &part));
 	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->slot(link, true, LINK_IDLE));
-	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->triplet(link, true));
+	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->path(link, true, 0xf0, rom, conflict));
 	TEST_ASSERT_EQUAL_INT(-EHOSTDOWN, link->ops->verify(link, one, false));
 	TEST_ASSERT_EQUAL_INT(-EIO, link->ops->recover(link, LINK_CHIP_RESET));
+}
+
+static int one_bit(struct link *link, bool out, enum link_after after)
+{
+	static unsigned slots;
+
+	(void)link, (void)out, (void)after;
+	return slots++ % 3 == 0; /* each bit of the id is 1 */
+}
+
+/* Its bits, one slot after the other, would show an id in no form that is found. */
+static void test_a_search_of_slots_is_one_line(void)
+{
+	const struct link_ops slots = {.name = "slots", .run = run, .slot = one_bit};
+	struct link bits = {.ops = &slots, .facts = &facts, .env = &host.env};
+	uint8_t rom[8] = {0}, conflict[8];
+	FILE *out = open_memstream(&text, &len);
+
+	trace = trace_record(out, false, false);
+	struct link *link = trace->tap.link(&trace->tap, 0, &bits);
+	TEST_ASSERT_EQUAL_INT(0, link->ops->path(link, true, 0xf0, rom, conflict));
+	TEST_ASSERT_EACH_EQUAL_HEX8(0xff, rom, 8);
+	TEST_ASSERT_EACH_EQUAL_HEX8(0, conflict, 8);
+	TEST_ASSERT_EQUAL_INT(2, trace_end(trace));
+	fclose(out);
+	begin_replay();
+	TEST_ASSERT_NOT_NULL(strstr(text, "0: path r F0 > FF.FFFFFFFFFFFFFFFF.FFFFFFFFFFFFFF\n"));
 }
 
 int main(void)
@@ -318,6 +336,7 @@ int main(void)
 	RUN_TEST(test_each_call_is_answered_as_it_was);
 	RUN_TEST(test_a_call_takes_the_time_that_it_took);
 	RUN_TEST(test_a_link_has_what_its_line_says);
+	RUN_TEST(test_a_search_of_slots_is_one_line);
 	RUN_TEST(test_a_result_is_one_that_its_call_can_have);
 	return UNITY_END();
 }
