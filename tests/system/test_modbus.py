@@ -6,6 +6,7 @@ import json
 import math
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -438,6 +439,31 @@ def test_a_client_that_stops_in_the_middle_or_takes_no_answer_holds_up_nobody(sc
         for _ in frames:
             plc.number += 1
             assert plc.answer()[0] == 3
+    assert face.stop() == 0
+
+
+def test_who_waits_for_a_descriptor_costs_nothing_and_commands_nothing(scene):
+    port = free_port()
+    daemon = scene.owsd(text(scene, port, RELAYS, Write="on", Allow="* 127.0.0.1"))
+    face = serve(scene, daemon)
+    with Client(port) as plc:
+        until(lambda: refused(plc.write_one, 16 + SHORT, 5) is None, 20, "it is taken")
+        commanded(scene, daemon, "5")
+    until(lambda: "0 clients" in scene.owsctl(daemon, "stats").stdout, 20, "it has left")
+    before = resource.prlimit(face.pid, resource.RLIMIT_NOFILE)
+    used = owsdtest.open_files(face)
+    resource.prlimit(face.pid, resource.RLIMIT_NOFILE, (min(set(range(len(used) + 1)) - set(used)), before[1]))
+    with Client(port) as plc:
+        plc.socket.sendall(plc.frame(struct.pack(">BHH", 6, 16 + SHORT, 7)))
+        logged(face, "no client can connect: Too many open files")
+        spent = processor_seconds(face)
+        time.sleep(2.2)  # longer than a command may wait
+        assert processor_seconds(face) - spent < 0.2
+        resource.prlimit(face.pid, resource.RLIMIT_NOFILE, before)
+        assert plc.answer() == bytes([0x86, BUSY])
+        assert scene.get(daemon, "relays") == "5"
+        plc.write_one(16 + SHORT, 7)
+        commanded(scene, daemon, "7")
     assert face.stop() == 0
 
 

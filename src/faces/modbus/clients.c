@@ -233,11 +233,23 @@ static void welcome(struct clients *c, int fd, const struct listen_address *from
 	                          .fd = fd,
 	                          .from = *from,
 	                          .heard_ns = now_ns,
-	                          .empty_ns = c->whole_ns, /* nobody waited then */
+	                          .empty_ns = c->nobody_ns,
+	                          .blind_ns = c->resumed_ns,
 	                          .pass = c->pass};
 	c->count++;
+	c->full_err = 0;
 	listen_print(from, text);
 	log_info(c->face->log, "%s: connected", text);
+}
+
+/* Connections wait with the kernel for a moment; who is connected is served meanwhile. */
+static void pause_listeners(struct clients *c, int err, int64_t now_ns)
+{
+	if (err != c->full_err)
+		log_warning(c->face->log, "no client can connect: %s", strerror(-err));
+	c->full_err = err;
+	c->pause_ns = now_ns + LISTEN_PAUSE_NS;
+	listen_pause(c->epoll, c->listeners, c->listener_count);
 }
 
 /* True: nobody waits there any more. */
@@ -251,12 +263,17 @@ static bool accept_some(struct clients *c, int listener, int64_t now_ns)
 		unsigned count;
 		int fd = listen_accept(listener, (struct sockaddr *)&at, &len);
 
-		/* no descriptor is left, though somebody waits: that of the most silent is */
-		silent = listen_is_full(fd) && i == 0 ? most_silent(c, NULL, &count) : NULL;
+		/*
+		 * A descriptor of this program is that of the most silent. What the whole machine
+		 * lacks, others would take.
+		 */
+		silent = fd == -EMFILE && i == 0 ? most_silent(c, NULL, &count) : NULL;
 		if (silent) {
 			drop(c, silent, "closed: too many files are open");
 			continue;
 		}
+		if (listen_is_full(fd))
+			pause_listeners(c, fd, now_ns);
 		if (fd < 0)
 			return fd == -EAGAIN;
 		if (listen_of((const struct sockaddr *)&at, &from))
@@ -351,6 +368,8 @@ void clients_take(struct clients *c)
 	if (whole) {
 		c->whole_ns = began_ns;
 		c->whole_pass = c->pass;
+		if (!c->pause_ns)
+			c->nobody_ns = began_ns;
 	}
 }
 
@@ -364,7 +383,12 @@ int64_t clients_tick(struct clients *c, int64_t now_ns)
 			if (c->listeners[i] < 0)
 				open_one(c, i, now_ns);
 	}
-	next_ns = c->open_ns;
+	if (c->pause_ns && now_ns >= c->pause_ns) {
+		c->pause_ns = 0;
+		listen_resume(c->epoll, c->listeners, c->listener_count);
+		c->resumed_ns = ows_now();
+	}
+	next_ns = c->pause_ns && c->pause_ns < c->open_ns ? c->pause_ns : c->open_ns;
 	for (unsigned i = 0; c->count && i < CONFIG_MODBUS_CLIENTS; i++) {
 		struct client *client = &c->places[i];
 

@@ -38,6 +38,10 @@ struct clients {
 	int open_err;
 	uint64_t pass, whole_pass; /* looks at epoll; the last that saw all who were ready, */
 	int64_t whole_ns;          /* and its time */
+	int64_t nobody_ns;         /* nobody waited at a listener then */
+	int64_t resumed_ns;        /* what epoll did not report before may have waited */
+	int64_t pause_ns;          /* no descriptor was left: listen again then; 0: it listens */
+	int full_err;              /* why; 0: since then somebody was accepted */
 	uint64_t requests, refused;
 	struct client places[CONFIG_MODBUS_CLIENTS];
 	/* Makes the answer to a request of that client. */

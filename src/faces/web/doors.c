@@ -18,7 +18,6 @@
 
 #define BATCH 64
 #define SEND_BUFFER (32 * 1024) /* bytes; the kernel takes twice that, with its own data */
-#define PAUSE_NS (200 * NS_PER_MS)
 
 struct visitor {
 	bool used; /* the place; fd counts then */
@@ -253,11 +252,9 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 /* No descriptor is left, or the porter is late: connections wait with the kernel for a moment. */
 static void pause_doors(struct doors *doors, int64_t now_ns)
 {
-	doors->paused_ns = now_ns + PAUSE_NS;
+	doors->paused_ns = now_ns + LISTEN_PAUSE_NS;
 	doors->watched_ns = INT64_MAX;
-	for (unsigned i = 0; i < doors->count; i++)
-		if (doors->fds[i] >= 0)
-			epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
+	listen_pause(doors->epoll, doors->fds, doors->count);
 }
 
 /* What the kernel keeps of an answer counts as memory of this program: 1200 of these are 75 MB. */
@@ -335,9 +332,7 @@ void doors_take(struct doors *doors, int64_t now_ns)
 		end_late(doors, now_ns);
 	if (doors->paused_ns && now_ns >= doors->paused_ns) {
 		doors->paused_ns = 0;
-		for (unsigned i = 0; i < doors->count; i++)
-			if (doors->fds[i] >= 0)
-				doors_watch(doors, doors->fds[i], i, 0);
+		listen_resume(doors->epoll, doors->fds, doors->count);
 		doors->watched_ns = ows_now();
 	}
 }

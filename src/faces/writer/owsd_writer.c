@@ -33,7 +33,6 @@
 #define GROUP "owsd-config"
 #define LOOK_MS 100   /* how often it looks which visits have ended */
 #define IDLE_MS 30000 /* then the service manager waits in its place */
-#define PAUSE_NS (200 * NS_PER_MS)
 
 /* The socket of the service manager, path then is ""; else that of -l, or in this user's place. */
 static int writer_socket(const struct face_arguments *a, char path[FACE_PATH])
@@ -92,7 +91,7 @@ static _Noreturn void attend(const struct writer *writer, int fd, int begin, boo
 static void take_one(const struct writer *writer, struct visitors *visitors, int listener,
                      int prefix)
 {
-	const struct timespec pause = {.tv_nsec = PAUSE_NS};
+	const struct timespec pause = {.tv_nsec = LISTEN_PAUSE_NS};
 	struct sockaddr_storage from = {0};
 	socklen_t len = sizeof(from);
 	struct peer peer = {0};

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -175,4 +176,24 @@ int listen_accept(int listener, struct sockaddr *from, socklen_t *len)
 bool listen_is_full(int err)
 {
 	return err == -EMFILE || err == -ENFILE || err == -ENOBUFS || err == -ENOMEM;
+}
+
+static void report(int epoll, const int *fds, unsigned count, uint32_t events)
+{
+	for (unsigned i = 0; i < count; i++) {
+		struct epoll_event event = {.events = events, .data.u32 = i};
+
+		if (fds[i] >= 0)
+			epoll_ctl(epoll, EPOLL_CTL_MOD, fds[i], &event);
+	}
+}
+
+void listen_pause(int epoll, const int *fds, unsigned count)
+{
+	report(epoll, fds, count, 0);
+}
+
+void listen_resume(int epoll, const int *fds, unsigned count)
+{
+	report(epoll, fds, count, EPOLLIN);
 }

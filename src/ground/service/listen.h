@@ -11,6 +11,8 @@
 #include <sys/socket.h>
 #include <sys/types.h>
 
+#include "hal/base/time.h"
+
 /*
  * Listen at a path, with a socket not blocking and closed on exec, in place of one of a process
  * that was killed. It has that mode, and that group unless this user may not give it that: then it
@@ -48,3 +50,10 @@ const char *listen_remedy(int err);
 int listen_accept(int listener, struct sockaddr *from, socklen_t *len);
 /* Did it say that there is no room for a connection? It waits with the kernel meanwhile. */
 bool listen_is_full(int err);
+/*
+ * Listeners that have no room would be ready without end: epoll, which knows each by its number in
+ * fds, reports none of them before listen_resume(). Those below 0 are left out.
+ */
+#define LISTEN_PAUSE_NS (200 * NS_PER_MS)
+void listen_pause(int epoll, const int *fds, unsigned count);
+void listen_resume(int epoll, const int *fds, unsigned count);

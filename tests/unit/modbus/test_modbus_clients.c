@@ -232,19 +232,27 @@ static void test_of_one_address_the_most_silent_gives_way(void)
 	close(third);
 }
 
-static void test_without_a_descriptor_the_most_silent_gives_way_too(void)
+/* No descriptor is left, until RLIMIT_NOFILE is again what is returned. */
+static struct rlimit take_descriptors(void)
 {
 	struct rlimit had, none;
-	int first = join(), second, fds[2];
+	int fds[2];
 
 	TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &had));
-	second = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
 	TEST_ASSERT_EQUAL_INT(0, pipe(fds));
 	none = had;
 	none.rlim_cur = (rlim_t)fds[0]; /* the numbers below are taken */
 	close(fds[0]);
 	close(fds[1]);
 	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none));
+	return had;
+}
+
+static void test_without_a_descriptor_the_most_silent_gives_way_too(void)
+{
+	int first = join(), second = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	struct rlimit had = take_descriptors();
+
 	connect_to(second);
 	run_clients();
 	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &had));
@@ -253,6 +261,35 @@ static void test_without_a_descriptor_the_most_silent_gives_way_too(void)
 	TEST_ASSERT_EQUAL_UINT(1, clients.count);
 	close(first);
 	close(second);
+}
+
+static void test_who_waits_for_a_descriptor_is_not_looked_at_without_end(void)
+{
+	struct pollfd ready = {.fd = clients.epoll, .events = POLLIN};
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	struct rlimit had = take_descriptors();
+	int64_t due_ns, sent_ns;
+
+	connect_to(fd);
+	TEST_ASSERT_EQUAL_INT(sizeof(request), (int)send(fd, request, sizeof(request), 0));
+	sent_ns = ows_now();
+	for (unsigned i = 0; i < 2; i++) {
+		TEST_ASSERT_EQUAL_INT(1, poll(&ready, 1, 1000));
+		clients_take(&clients);
+		TEST_ASSERT_EQUAL_INT(0, poll(&ready, 1, 20));
+		/* nobody is ready, which says nothing of who waits */
+		clients_take(&clients);
+		face.came_ns[0] = ows_now();
+		due_ns = clients_tick(&clients, ows_now());
+		TEST_ASSERT_INT64_WITHIN(NS_PER_S, ows_now(), due_ns);
+		if (i)
+			TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &had));
+		TEST_ASSERT_EQUAL_INT64(INT64_MAX, clients_tick(&clients, due_ns));
+	}
+	run_clients();
+	TEST_ASSERT_EQUAL_INT(sizeof(request), got(fd));
+	TEST_ASSERT_LESS_OR_EQUAL_INT64(sent_ns, came_ns);
+	close(fd);
 }
 
 static void test_without_the_block_all_are_closed(void)
@@ -277,6 +314,7 @@ int main(void)
 	RUN_TEST(test_who_waited_behind_many_is_no_younger_for_it);
 	RUN_TEST(test_of_one_address_the_most_silent_gives_way);
 	RUN_TEST(test_without_a_descriptor_the_most_silent_gives_way_too);
+	RUN_TEST(test_who_waits_for_a_descriptor_is_not_looked_at_without_end);
 	RUN_TEST(test_without_the_block_all_are_closed);
 	return UNITY_END();
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -146,6 +147,24 @@ static void test_no_room_for_a_connection_is_no_error_of_it(void)
 	                  listen_is_full(0));
 }
 
+static void test_listeners_that_pause_are_not_ready(void)
+{
+	int fds[] = {-1, make(0600)}, epoll = epoll_create1(EPOLL_CLOEXEC), peer = dial();
+	struct epoll_event event = {.events = EPOLLIN, .data.u32 = 1};
+
+	TEST_ASSERT_EQUAL(0, epoll_ctl(epoll, EPOLL_CTL_ADD, fds[1], &event));
+	TEST_ASSERT_EQUAL(1, epoll_wait(epoll, &event, 1, 0));
+	listen_pause(epoll, fds, 2);
+	TEST_ASSERT_EQUAL(0, epoll_wait(epoll, &event, 1, 0));
+	listen_resume(epoll, fds, 2);
+	event.data.u32 = 0;
+	TEST_ASSERT_EQUAL(1, epoll_wait(epoll, &event, 1, 0));
+	TEST_ASSERT_EQUAL_UINT32(1, event.data.u32);
+	close(peer);
+	close(fds[1]);
+	close(epoll);
+}
+
 static void test_a_byte_out_of_band_keeps_its_place(void)
 {
 	struct sockaddr_storage from = {0};
@@ -212,6 +231,7 @@ int main(void)
 	RUN_TEST(test_an_address_of_another_machine_is_served_later_if_that_is_asked_for);
 	RUN_TEST(test_an_address_has_one_listener);
 	RUN_TEST(test_no_room_for_a_connection_is_no_error_of_it);
+	RUN_TEST(test_listeners_that_pause_are_not_ready);
 	RUN_TEST(test_a_byte_out_of_band_keeps_its_place);
 	RUN_TEST(test_nobody_who_connects_is_no_error_of_the_listener);
 	RUN_TEST(test_without_a_service_manager_there_is_no_socket_of_it);
