@@ -11,6 +11,8 @@
 #include "src/tool/owsctl/modbus_forms.h"
 
 #define ID_MOST 256
+#define ID_MOST_HAL 28 /* with the rest of a pin 47, above which mb2hal does not start */
+#define ID_PLACE 6     /* "_P2047" */
 
 const char *const modbus_cell_names[MODBUS_CELL_COUNT] = {
 #define X(name) #name,
@@ -33,6 +35,7 @@ struct modbus_form {
 	const struct escape *escape;
 	bool removed; /* has the places of signals that are gone, too */
 	const char *head, *row, *foot;
+	size_t id_most; /* of an identifier; 0: as long as ours are */
 };
 
 /* A record, in the order of its registers. */
@@ -52,6 +55,14 @@ struct modbus_form {
 #define SCL_FIELD(name, type) "      " name " : " type ";\n"
 #define XML_FIELDS FIELDS(XML_FIELD)
 #define SCL_FIELDS FIELDS(SCL_FIELD)
+
+/* mb2hal keeps the last values when the connection is lost: only the heart shows that. */
+_Static_assert(LAYOUT_LIVE == 3 && LAYOUT_HEART == 4, "MB2HAL() reads them with one request");
+#define MB2HAL(index, first, pins, name) \
+	"[TRANSACTION_" index "]\nLINK_TYPE=tcp\nTCP_IP=$host\nTCP_PORT=$port\n" \
+	"MB_SLAVE_ID=1\nFIRST_ELEMENT=" first "\nPIN_NAMES=" pins "\n" \
+	"MAX_UPDATE_RATE=2.0\nMB_RESPONSE_TIMEOUT_MS=500\n" \
+	"MB_TX_CODE=fnct_03_read_holding_registers\nHAL_TX_NAME=" name "\n"
 
 static const struct modbus_form forms[] = {
 	{"csv", in_csv, true, "place,record,float32,float64,name,type,io,unit,identity\n",
@@ -123,12 +134,9 @@ static const struct modbus_form forms[] = {
          "\n]}}]\n"},
 	{"mb2hal", in_text, false,
          "[MB2HAL_INIT]\nINIT_DEBUG=1\nVERSION=1.1\nHAL_MODULE_NAME=owsd\nSLOWDOWN=0.0\n"
-         "TOTAL_TRANSACTIONS=$count\n",
-         "\n# $name $unit, $identity\n[TRANSACTION_$index]\nLINK_TYPE=tcp\nTCP_IP=$host\n"
-         "TCP_PORT=$port\nMB_SLAVE_ID=1\nFIRST_ELEMENT=$int16\nPIN_NAMES=value,quality\n"
-         "MAX_UPDATE_RATE=2.0\nMB_RESPONSE_TIMEOUT_MS=500\n"
-         "MB_TX_CODE=fnct_03_read_holding_registers\nHAL_TX_NAME=$id\n",
-         ""},
+         "TOTAL_TRANSACTIONS=$transactions\n\n" MB2HAL("00", "3", "live,heart", "owsd-modbus"),
+         "\n# $name $unit, $identity\n" MB2HAL("$index", "$int16", "value,quality", "$id"), "",
+         ID_MOST_HAL},
 	{"mbpoll", in_text, false, "",
          "mbpoll -m tcp -p $port -0 -1 -t 4:float -B -r $float32 -c 1 $host # $name $unit\n", ""},
 };
@@ -159,10 +167,10 @@ static bool is_letter(char c)
 }
 
 /*
- * An identifier of IEC 61131-3, whose case counts for nothing. A name that is none gets the place,
- * and so does one with a twin, so that no two agree.
+ * An identifier of IEC 61131-3, whose case counts for nothing. A name that is none, or too long for
+ * one, gets the place, and so does one with a twin, so that no two agree.
  */
-static const char *identifier(const char *const *cells, bool twin, char id[ID_MOST])
+static const char *identifier(const char *const *cells, bool twin, size_t most, char id[ID_MOST])
 {
 	const char *name = cells[MODBUS_CELL_name];
 	size_t at = 0;
@@ -170,7 +178,7 @@ static const char *identifier(const char *const *cells, bool twin, char id[ID_MO
 
 	if (!is_letter(*name))
 		id[at++] = 'S';
-	for (const char *c = name; *c && at < ID_MOST - 16; c++) {
+	for (const char *c = name; *c && at < ID_MOST - 1; c++) {
 		bool fits = is_letter(*c) || (*c >= '0' && *c <= '9') ||
 		            (*c == '_' && at && id[at - 1] != '_' && c[1]);
 
@@ -179,9 +187,12 @@ static const char *identifier(const char *const *cells, bool twin, char id[ID_MO
 			id[at++] = fits ? *c : '_';
 	}
 	id[at] = '\0';
-	if (!same)
-		snprintf(id + at, ID_MOST - at, "%s%s", at && id[at - 1] == '_' ? "P" : "_P",
-		         cells[MODBUS_CELL_place]);
+	if (same && at <= most)
+		return id;
+	if (at > most - ID_PLACE)
+		at = most - ID_PLACE;
+	snprintf(id + at, ID_MOST - at, "%s%s", at && id[at - 1] == '_' ? "P" : "_P",
+	         cells[MODBUS_CELL_place]);
 	return id;
 }
 
@@ -218,14 +229,14 @@ static void put(FILE *out, const char *text, const struct word *words, const str
 static void put_once(const struct modbus_file *file, const struct modbus_form *form,
                      const char *text)
 {
-	char count[16];
+	char transactions[16];
 	const struct word words[] = {{"instance", file->instance},
 	                             {"host", file->host},
 	                             {"port", file->port},
-	                             {"count", count},
+	                             {"transactions", transactions},
 	                             {NULL, NULL}};
 
-	snprintf(count, sizeof(count), "%u", file->count);
+	snprintf(transactions, sizeof(transactions), "%u", file->count + 1);
 	put(file->out, text, words, form->escape);
 }
 
@@ -251,13 +262,14 @@ void modbus_form_row(struct modbus_file *file, const struct modbus_form *form,
 #define X(name) {#name, cells[MODBUS_CELL_##name]},
 		MODBUS_CELLS(X)
 #undef X
-			{"id", identifier(cells, file->twin, id)},
+			{"id", identifier(cells, file->twin,
+	                                  form->id_most ? form->id_most : ID_MOST - 1, id)},
 		{NULL, NULL},
 	};
 
 	if (!*cells[MODBUS_CELL_name] && !form->removed)
 		return;
-	snprintf(numbers[0], sizeof(numbers[0]), "%02u", file->written);
+	snprintf(numbers[0], sizeof(numbers[0]), "%02u", file->written + 1);
 	snprintf(numbers[1], sizeof(numbers[1]), "%08u", place);
 	snprintf(numbers[2], sizeof(numbers[2]), "%u", layout_in_record(LAYOUT_SHORT, place));
 	snprintf(numbers[3], sizeof(numbers[3]), "%u", layout_in_row(LAYOUT_QUALITY, place));

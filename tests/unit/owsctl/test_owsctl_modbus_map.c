@@ -95,8 +95,8 @@ static void test_each_program_gets_its_own_form(void)
 		{"openplc", "\"host\":\"10.0.0.9\",\"port\":1502,",
 	         "{\"fc\":3,\"offset\":\"46014\",\"iec_location\":\"%ID7\"",
 	         "{\"fc\":3,\"offset\":\"43001\",\"iec_location\":\"%IW1\""},
-		{"mb2hal", "TOTAL_TRANSACTIONS=2\n",
-	         "[TRANSACTION_01]\nLINK_TYPE=tcp\nTCP_IP=10.0.0.9\nTCP_PORT=1502\n"
+		{"mb2hal", "TOTAL_TRANSACTIONS=3\n\n[TRANSACTION_00]\n",
+	         "[TRANSACTION_02]\nLINK_TYPE=tcp\nTCP_IP=10.0.0.9\nTCP_PORT=1502\n"
 	         "MB_SLAVE_ID=1\nFIRST_ELEMENT=120\n",
 	         "HAL_TX_NAME=relay\n"},
 		{"mbpoll", "mbpoll -m tcp -p 1502 ", "-r 46014 -c 1 10.0.0.9 # room1", "# relay"},
@@ -173,6 +173,33 @@ static void test_names_that_a_program_would_not_take_become_others(void)
 	}
 }
 
+/* With a longer one mb2hal would not start. */
+static void test_an_identifier_is_no_longer_than_its_program_takes(void)
+{
+	static const struct {
+		const char *name, *id;
+	} cases[] = {
+		{"a123456789b123456789c1234567", "HAL_TX_NAME=a123456789b123456789c1234567\n"},
+		{"a123456789b123456789c12345678", "HAL_TX_NAME=a123456789b123456789c1_P2047\n"},
+	};
+	const struct modbus_form *form = modbus_form_find("mb2hal");
+	const char *cells[MODBUS_CELL_COUNT] = {"2047", "1", "1", "1"};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		char *text = NULL;
+		size_t len = 0;
+		struct modbus_file file = {.out = open_memstream(&text, &len), .host = "a"};
+
+		cells[MODBUS_CELL_name] = cases[i].name;
+		cells[MODBUS_CELL_unit] = cells[MODBUS_CELL_identity] = "";
+		file.port = "502";
+		modbus_form_row(&file, form, cells);
+		fclose(file.out);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, cases[i].id), text);
+		free(text);
+	}
+}
+
 /* In the languages of IEC 61131-3 they would be one. */
 static void test_names_that_differ_by_case_alone_become_two(void)
 {
@@ -202,6 +229,7 @@ int main(void)
 	RUN_TEST(test_each_program_gets_its_own_form);
 	RUN_TEST(test_a_host_is_a_name_or_an_address_with_a_port_or_without);
 	RUN_TEST(test_names_that_a_program_would_not_take_become_others);
+	RUN_TEST(test_an_identifier_is_no_longer_than_its_program_takes);
 	RUN_TEST(test_names_that_differ_by_case_alone_become_two);
 	RUN_TEST(test_what_is_no_map_is_said_with_its_line);
 	return UNITY_END();
