@@ -3,22 +3,18 @@
 """What other programs make of owsd-mqtt, each a genuine one: the flow for Node-RED, imported and run; Telegraf; and
 wb-hass-gw, which PyPI does not have: a clone of github.com/Hacker-CB/wb-hass-gw below OWSD_PEERS."""
 
-import fcntl
 import json
 import os
 import pathlib
-import shutil
 import subprocess
 
 import clients
 import gobuild
+import nodered
 import owsdtest
 from mqtthouse import RELAY, ROOM, SENSOR, House, item, program
 from owsdtest import raw, until
 
-# The Node-RED, and the Node.js that it runs on
-NODE_RED = ("node-red@5.0.7", "node@22.23.3")
-INSTALL_SECONDS = 300  # less than what a test may take
 TELEGRAF = ("github.com/influxdata/telegraf/cmd/telegraf", "v1.37.2",
             "-tags", "custom,inputs.mqtt_consumer,outputs.file,parsers.json,serializers.json")
 GATEWAY = ["gmqtt==0.8.0", "PyYAML==6.0.4", "voluptuous==0.11.7"]
@@ -26,31 +22,7 @@ PULL = dict(item("pull", "/simulator/unplug", "bool", "output"), InitValue="0")
 FLOW = owsdtest.SOURCE / "board/fleet/node-red.json"
 
 
-def node_red():
-    """[command] of it, out of the user's cache or, once, from the registry of npm."""
-    npm = shutil.which("npm") or owsdtest.skip("no npm here (package npm)")
-    base = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "owsd"
-    base.mkdir(parents=True, exist_ok=True)
-    place = base / "node-red"
-    with open(base / "node-red.lock", "w", encoding="ascii") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        if not (place / "versions").exists() or (place / "versions").read_text() != str(NODE_RED):
-            shutil.rmtree(place, ignore_errors=True)
-            place.mkdir()
-            try:
-                done = subprocess.run([npm, "install", "--prefix", place, "--no-audit", "--no-fund", *NODE_RED], check=False,
-                                      capture_output=True, text=True, timeout=INSTALL_SECONDS)
-                last = done.stderr.strip().splitlines()[-1:]
-            except subprocess.TimeoutExpired:
-                done, last = None, "it takes too long"
-            if not done or done.returncode:
-                owsdtest.skip(f"not cached and cannot be had: Node-RED: {last}")
-            (place / "versions").write_text(str(NODE_RED))
-    return [place / "node_modules/node/bin/node", place / "node_modules/node-red/red.js"]
-
-
 def test_the_flow_for_node_red_has_values_commands_and_answers(scene):
-    command = node_red()
     house = House(scene, ROOM, RELAY, Write=raw("on"))
     flow = json.loads(FLOW.read_text())
     nodes = {node["id"]: node for node in flow}
@@ -63,12 +35,7 @@ def test_the_flow_for_node_red_has_values_commands_and_answers(scene):
                  {"id": f"{shown}-out", "type": "mqtt out", "z": "owsd-flow", "topic": "", "broker": "owsd-broker", "wires": []}]
     flow.append({"id": "judge-press", "type": "mqtt in", "z": "owsd-flow", "topic": "judge/press", "broker": "owsd-broker",
                  "qos": "1", "datatype": "utf8", "inputs": 0, "wires": [["owsd-set"]]})
-    place = scene.path / "node-red"
-    place.mkdir()
-    (place / "flows.json").write_text(json.dumps(flow))
-    (place / "settings.js").write_text('module.exports = {flowFile: "flows.json", uiHost: "127.0.0.1", '
-                                       f'uiPort: {owsdtest.free_port()}, telemetry: {{enabled: false}}}};\n')
-    judge = scene.start([*command, "-u", place, "-s", place / "settings.js"], {"HOME": str(place)})
+    judge = nodered.start(scene, flow)
     until(lambda: house.listener.last("judge/number/room") == "21.5", 90, lambda: judge.log()[-3000:])
     house.arrives("room", lambda m: m["good"])
     # the output that nobody has set is not good, so it is not shown, and has no other side
