@@ -82,7 +82,7 @@ static void test_the_remark_has_target_and_words(void)
 {
 	TEST_ASSERT_EQUAL(CTL_DONE, recorded("", "scan /28." SERIAL));
 	holds(content(),
-	      " -t plant.example:4304 scan /28." SERIAL "\n0.0000 0.000 net sent \"/28.");
+	      " -t plant.example:4304 scan /28." SERIAL "\n0.0000 0.000 net: sent \"/28.");
 	holds(err, "has 1 lines\n");
 	setUp();
 	caught_ctl.target = NULL;
