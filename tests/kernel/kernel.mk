@@ -8,11 +8,13 @@ RIG_FRONT   := $(B)/tests/kernel/vhci.o $(B)/tests/kernel/usbip.o $(B)/tests/ker
                $(B)/tests/kernel/control.o
 RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(B)/kernel/owwalk $(PROGRAMS)
 ENDURANCE   := $(B)/kernel/endurance
-RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer,\
-                 $(shell PATH="$$PATH:/usr/sbin" command -v $(p)))
+RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer curl mosquitto mosquitto_pub mosquitto_sub,\
+                 $(shell PATH="$$PATH:/usr/sbin" command -v $(p))) $(B)/kernel/apparmor_parser
 RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*)) docs/examples/sensors.table
+# The suite addon alone has these
+RIG_ADDON   := $(B)/kernel/addon.tar board/addon/apparmor.txt
 
-.PHONY: test-kernel bench-kernel endurance-kernel kernel-programs test-gpio test-gpio-pi gpio-libraries gpio-programs
+.PHONY: test-kernel addon-root bench-kernel endurance-kernel kernel-programs test-gpio test-gpio-pi gpio-libraries gpio-programs
 
 $(B)/unit/test_usbip: $(B)/tests/kernel/usbip.o
 $(B)/unit/test_tiny_usb: $(B)/tests/kernel/tiny_usb.o
@@ -38,14 +40,25 @@ $(ENDURANCE): $(patsubst %,$(B)/tests/kernel/%.o,endurance endurance_truth endur
 kernel-programs: all $(RIG_OURS)
 
 rig = tests/kernel/boot --time $(KERNEL_TIME) $(if $(OR_SKIP),--or-skip) $(RIG_OURS:%=--program %) $(RIG_PEERS:%=--program %) \
-          $(RIG_GUEST:%=--file %) $(1)
+          $(RIG_GUEST:%=--file %) $(RIG_ADDON:%=--file %) $(1)
 
 # With OR_SKIP=1 a package that cannot be had does not end it: boot then counts the suites as skipped
-test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers usb usbdaemon
+test-kernel: SUITES ?= detect kernel owserver faults daemon ways netlink w1 w1daemon w1por drivers usb usbdaemon record addon
+test-kernel: WITH_ADDON = $(filter addon,$(SUITES))
 test-kernel:
-	@sh board/install-deps build kernel $(if $(OR_SKIP),|| true)
+	@sh board/install-deps build kernel $(if $(WITH_ADDON),addon broker) $(if $(OR_SKIP),|| true)
 	@$(MAKE) --no-print-directory kernel-programs
+	@$(if $(WITH_ADDON),$(MAKE) --no-print-directory addon-root $(if $(OR_SKIP),|| true))
 	@$(call rig,$(SUITES))
+
+# The container of the add-on, and what loads its profile, which is not installed
+addon-root: all
+	@mkdir -p $(B)/kernel
+	@rm -rf $(B)/kernel/apparmor $(B)/kernel/addon
+	@sh board/fetch-debs -x - $$(dpkg --print-architecture) $(B)/kernel/apparmor apparmor
+	@find $(B)/kernel/apparmor -name apparmor_parser -exec cp -t $(B)/kernel {} +
+	@$(MAKE) -s install DESTDIR=$(abspath $(B))/kernel/addon PREFIX=/usr >/dev/null
+	@sh tests/kernel/addon $(B)/kernel/addon $(B)/kernel/addon.tar
 
 # Of the properties of all devices one in SHARE is read: with 1 owserver alone takes most of an hour
 SHARE ?= 10

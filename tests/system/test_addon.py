@@ -431,6 +431,8 @@ def test_make_addon_makes_a_repository_of_the_packages_that_are_there(scene):
     assert laid == sorted(f"{name}_0.10.0+deb13_{arch}.deb" for name in names for arch in ("amd64", "arm64"))
     assert "arch: [amd64, aarch64]" in (tree / "owsd/config.yaml").read_text()
     assert "@" not in (tree / "owsd/config.yaml").read_text().split("\n", 2)[2] + (tree / "owsd/Dockerfile").read_text()
+    # Supervisor puts its own name in the place of the only one that begins a line
+    assert re.findall(r"^profile (\S+)", (tree / "owsd/apparmor.txt").read_text(), re.M) == ["owsd"]
     assert (tree / "owsd/icon.png").read_bytes().startswith(b"\x89PNG")
     assert "https://example.org/here" in (tree / "repository.yaml").read_text()
     judge(tree)
