@@ -1,5 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* The lines of a recording. The same calls write a new one, and look up one that is there. */
+/*
+ * The lines of a recording. The same calls write a new one, and look up one that is there.
+ * owsctl(1) has their form. The questions:
+ *
+ * link: the number of the chip, and which of the questions the link knows
+ * run r, run -: with a reset or without; bytes written, how many are read; strong: the pull-up
+ * path, slot: all of a search, with a reset (r) or without, answered with the id, and the id with
+ *   all bits turned where devices differ; one bit
+ * search, verify, recover: all devices; is this one there; a rung of the recovery
+ * transfer, write, read, claim: of an I2C adapter, with the address: messages that write (w) bytes
+ *   or read (r) so many (of the last the bytes are counted); SMBus calls; is the address free
+ * has, offers, area, write, convert: of a driver of the kernel (target w1)
+ */
 #pragma once
 
 #include "hal/trace/recording.h"
