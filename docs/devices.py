@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """devices.py: write docs/devices.md on the standard output, from the tables of the chip families
 (tests/system/families.c prints them), of owserver's /structure (tests/unit/data/owfs-structure.tsv)
-and of the kernel's drivers (docs/properties.py). `make devices-page` writes it into its place.
+and of the kernel's drivers (hal/w1). `make devices-page` writes it into its place.
 """
 
 import collections
@@ -16,7 +16,6 @@ import textwrap
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
-DRIVERS = SOURCE / "docs/properties.py"
 STRUCTURE = SOURCE / "tests/unit/data/owfs-structure.tsv"
 BRIDGES = {"19": "DS28E17", "56": "DS28E18"}
 READ, WRITE = 1, 2
@@ -77,9 +76,8 @@ def usual():
 
 def driven():
     """The families that target w1 serves by a driver's own files."""
-    text = DRIVERS.read_text()
-    return set(re.findall(r'"(\w\w)":', re.search(r"^DRIVEN = \{(.*?)\n *\}\s*$|^DRIVEN = \{(.*?)\}\n[A-Z]",
-                                                   text, re.M | re.S)[0]))
+    text = "".join((SOURCE / f"hal/w1/{name}.c").read_text() for name in ("thermometer", "switches", "driver"))
+    return {code.upper() for code in re.findall(r"(?:\.family = |DRIVER\(|EEPROM\()0x(\w\w)", text)}
 
 
 def row_of(family, name):
