@@ -140,12 +140,12 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert status == 0, said
     assert prose(after) == prose(before)
     assert "Commit abc1234; Some CPU (virtual machine), 2 cores" in after
-    assert "| `rss`: resident with 100 signals | 3 024 KiB | owserver 5 152 KiB |  | 2.6 MiB: **missed** |" in after
+    assert "| `rss`: resident with 100 signals | 3 024 KiB | owserver 5 152 KiB | 2.6 MiB: **missed** |" in after
     assert "10 ns, or three loads from that cache: met" in after
     assert "| 1 000, 64 targets | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 % | 400 ns |" in after
     assert "| 1 000, 100 programs | 8.0 ms | 8.0 ms | 8.0 KiB | 8.0 us | 8.0 % |  |" in after
-    assert "| 50 | 1.20 s | 1.05 | 1.20 s | 1.05 | 0.90 s | 0.80 s | 1.25 s | 1.7 s: met |" in after
-    assert "| 80 on 8 channels | 1.20 s | 1.05 | 1.20 s | 1.05 | 0.90 s |  | 1.25 s | 2.2 s: met |" in after
+    assert "| 50 | 1.20 s | 1.05 | 1.20 s | 0.90 s | 0.80 s | 1.25 s | 1.7 s: met |" in after
+    assert "| 80 on 8 channels | 1.20 s | 1.05 | 1.20 s | 0.90 s |  | 1.25 s | 2.2 s: met |" in after
     assert "| alarm items, idle search 10 % | 60 ms | 109 ms | 70 ms: **missed** |" in after
     assert "| 50 | rrdtool, the archives of collectd | 121 MB | none, 7.6 MB | 22.2 us/s | 4 336 kB |" in after
     assert "1.3 times that over loopback" in after
