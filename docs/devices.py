@@ -12,12 +12,10 @@ import pathlib
 import re
 import subprocess
 import sys
-import textwrap
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("OWSD_BUILD", SOURCE / "build"))
 STRUCTURE = SOURCE / "tests/unit/data/owfs-structure.tsv"
-BRIDGES = {"19": "DS28E17", "56": "DS28E18"}
 READ, WRITE = 1, 2
 LATCH, STAYS, CLEARS, POR = 1, 2, 4, 8
 PLACES = 12  # what a row names at most; the others are counted
@@ -35,12 +33,11 @@ INTRO = """# The chips
   properties of a chip. [properties.md](properties.md) compares each with owserver's.
 - **The range** is what a chip can measure, with the error that its data sheet allows. A number
   outside is never a good value.
-- **Outputs** with *read back* are read again: owsd notices when the chip does not do what was
-  written.
+- **Read back**: owsd notices when the chip does not do what was written.
 - **Alarm**: the chip takes part in the alarm search ([alarms.md](alarms.md)). The names are the
   properties for `LatchAlarm` (*stays*: until `ResetLatch`) and `PorAlarm`.
 - **Ways**: each chip works over all adapters that owsd drives itself (`i2c:`, `usb:`, `serial:`,
-  `uart:`, `w1:netlink`). Column *w1*: also by the files of a driver of the kernel
+  `uart:`, `w1:netlink`); with a star also by the files of a driver of the kernel
   ([w1.md](w1.md)). An owserver knows all codes of this page but: {missing}.
 """
 
@@ -125,10 +122,26 @@ def has(family):
 
 
 def alarm(family):
-    latch = [f"`{p.name}`" + (" (stays)" if p.alarm & STAYS else "") for p in family["properties"].values()
-             if p.alarm & LATCH and not p.hidden]
+    """The latches, of each group whether they stay, and the power-on flags."""
+    groups = collections.OrderedDict()
+    for p in family["properties"].values():
+        if p.alarm & LATCH and not p.hidden:
+            groups.setdefault(" (stays)" if p.alarm & STAYS else "", []).append(p.name)
     por = [f"`{p.name}`" for p in family["properties"].values() if p.alarm & POR]
-    return ", ".join(latch + por) or ("yes" if family["alarms"] else "")
+    return ", ".join([latches(names) + stays for stays, names in groups.items()] + por) or \
+        ("yes" if family["alarms"] else "")
+
+
+def latches(names):
+    """Many of several chips by the chips' common name."""
+    if len(names) > PLACES:
+        names = dict.fromkeys(re.sub(r"^([A-Z]+)\d+/", r"\1*/", name) for name in names)
+        folders = collections.OrderedDict()
+        for folder, last in (name.rsplit("/", 1) for name in names):
+            folders.setdefault(folder, []).append(last)
+        names = [f"{folder}/{{{','.join(last)}}}" if len(last) > 1 else f"{folder}/{last[0]}"
+                 for folder, last in folders.items()]
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def line(cells):
@@ -141,21 +154,14 @@ def page():
     assert all(family["simulated"] for family in found), "the page says that each was simulated"
     missing = [f["code"] for f in found if f["code"] not in served]
     out = [INTRO.format(count=len(found), missing=", ".join(missing)),
-           line(["code", "chip", "what it has", "alarm", "w1"]), "|---|---|---|---|---|"]
-    index = {}
+           line(["code", "chip", "what it has", "alarm"]), "|---|---|---|---|"]
     for family in found:
         code, chips = family["code"], names.get(family["code"], family["type"])
         others = [c for c in dict.fromkeys(family["kinds"] + family["simulated"])
                   if re.fullmatch(r"[A-Z]+\d\w*", c)]
-        for chip in [family["type"], *others]:
-            if re.search(r"\d", chip):
-                index.setdefault(chip, code)
-        out.append(line([code, ", ".join([chips, *(c for c in others if c not in chips and code != "7E")]),
-                         has(family), alarm(family), "yes" if code in w1 else ""]))
-    index.update((chip, code) for code, chip in BRIDGES.items())
-    out += ["", "## By the name of the chip", "", *textwrap.wrap(", ".join(
-        f"{chip} {code}" for chip, code in sorted(index.items())) + ".", 100), ""]
-    return "\n".join(out)
+        out.append(line([code + "*" * (code in w1), ", ".join([chips, *(c for c in others if c not in chips and code != "7E")]),
+                         has(family), alarm(family)]))
+    return "\n".join([*out, ""])
 
 
 if __name__ == "__main__":
