@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The structured text of plc.md that reads the image: its structures are those of ows_layout.h, and
+"""The structured text for CODESYS that reads the image: its structures are those of ows_layout.h, and
 translated into Python, with the functions of SysFile, it has the values of a real owsd."""
 
 import ctypes
@@ -22,8 +22,7 @@ RENAMED = {("OwsRecord", "kind"): "type", ("OwsSample", "length"): "len"}  # whi
 
 
 def source():
-    page = (SOURCE / "docs/plc.md").read_text()
-    return page.split("## CODESYS on the machine of owsd", 1)[1].split("```text\n", 1)[1].split("```", 1)[0]
+    return (SOURCE / "docs/examples/codesys/owsd_number.st").read_text()
 
 
 def variables(text, types):
