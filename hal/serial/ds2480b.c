@@ -48,16 +48,17 @@ enum { READ_STRONG = 0x07, ENDLESS = 0x0E };
 struct stream {
 	uint8_t out[2 * PIECE + 16], in[PIECE + 16];
 	size_t out_n, in_n; /* in_n: how many answers there will be */
+	bool ends;          /* it has the end of a pulse */
 };
 
 /* Of a pulse, in command mode. */
 static void put_end(struct serial_master *master, struct stream *stream)
 {
-	if (master->adapter.strong) {
-		stream->out[stream->out_n++] = END_PULSE;
-		stream->in_n++;
-	}
-	master->adapter.strong = false;
+	if (!master->adapter.strong || stream->ends)
+		return;
+	stream->out[stream->out_n++] = END_PULSE;
+	stream->in_n++;
+	stream->ends = true;
 }
 
 static void put_command(struct serial_master *master, struct stream *stream, uint8_t command,
@@ -90,13 +91,19 @@ static int lose(struct serial_master *master, int err)
 	return adapter_lose(&master->adapter, err);
 }
 
-static int send(struct serial_master *master, struct stream *stream)
+/* strong: the pull-up is on after it. After an error it may be, as it may where it was before. */
+static int send(struct serial_master *master, struct stream *stream, bool strong)
 {
 	size_t got;
+
+	master->adapter.strong |= strong;
 	int err = serial_exchange(master, BAUD, stream->out, stream->out_n, stream->in,
 	                          stream->in_n, &got);
 
-	return err ? lose(master, err) : 0;
+	if (err)
+		return lose(master, err);
+	master->adapter.strong = strong;
+	return 0;
 }
 
 /* -ENXIO: the chip was without supply, and has forgotten its parameters. */
@@ -127,9 +134,10 @@ static int ds2480b_settle(struct adapter *adapter)
 	}
 	if (!err)
 		err = serial_settle(master);
-	master->data_mode = adapter->strong = false;
-	if (!err)
+	if (!err) {
+		master->data_mode = adapter->strong = false;
 		err = ask_parameters(master);
+	}
 	adapter->lost = err != 0;
 	return err;
 }
@@ -175,14 +183,13 @@ static int ds2480b_bits(struct adapter *adapter, uint8_t bits, unsigned n, bool 
 		                       (strong && i + 1 == n ? THEN_STRONG : 0));
 		put_command(master, &stream, command[i], true);
 	}
-	int err = send(master, &stream);
+	int err = send(master, &stream, strong);
 
 	if (err)
 		return err;
 	const uint8_t *answer = stream.in + stream.in_n - n;
 
 	master->adapter.cost.wire_ns += (uint64_t)n * SLOT_NS;
-	adapter->strong = strong;
 	if (strong && answer[-1] != ENDLESS)
 		return lose(master, -ENXIO);
 	for (unsigned i = 0; i < n; i++) {
@@ -205,7 +212,7 @@ static int ds2480b_pass(struct adapter *adapter, bool reset, const uint8_t *out,
 		put_command(master, &stream, RESET, true);
 	for (size_t i = 0; i < out_n + in_n; i++)
 		put_data(master, &stream, i < out_n ? out[i] : 0xFF);
-	int err = send(master, &stream);
+	int err = send(master, &stream, false);
 	const uint8_t *back = stream.in + stream.in_n - out_n - in_n;
 
 	if (!err && reset)
@@ -244,7 +251,7 @@ static int ds2480b_path(struct link *base, bool reset, uint8_t command, uint8_t 
 		put_data(master, &stream, byte);
 	}
 	put_command(master, &stream, SEARCH_OFF, false);
-	err = send(master, &stream);
+	err = send(master, &stream, false);
 	const uint8_t *back = stream.in + stream.in_n - sizeof(answer) - 1;
 
 	if (!err && reset)
@@ -306,7 +313,8 @@ static int master_reset(struct serial_master *master)
 		err = port->ops->write(port, &calibrate, 1);
 	if (!err)
 		err = serial_settle(master);
-	master->data_mode = master->adapter.strong = false;
+	if (!err)
+		master->data_mode = master->adapter.strong = false;
 	return err;
 }
 

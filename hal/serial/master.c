@@ -12,10 +12,10 @@
 #define ARRIVE_NS (NS_PER_MS / 4)
 #define QUIET_NS (30 * NS_PER_MS) /* nothing comes for longer than a USB adapter gathers bytes */
 #define SETTLE_NS (200 * NS_PER_MS)
-#define END_NS (5 * NS_PER_MS) /* a byte is on the line by then */
+#define END_NS (5 * NS_PER_MS) /* two bytes are on the line by then */
 
-/* Of a DS2480B, the only one that has a strong pull-up. */
-static const uint8_t end_pulse = 0xF1;
+/* Of a DS2480B, the only one that has a strong pull-up: out of the mode for data, and its end. */
+static const uint8_t end_pulse[] = {0xE3, 0xF1};
 
 int serial_create(const struct link_master_ops *ops, const struct serial_kind *kind,
                   const struct bus_env *env, const struct serial_source *source,
@@ -61,9 +61,14 @@ void serial_close(struct link_master *base)
 
 	if (!adapter->open)
 		return;
-	/* nobody else would end a strong pull-up */
-	if (adapter->strong && !master->port->ops->write(master->port, &end_pulse, 1))
-		(void)adapter_wait(adapter, END_NS);
+	size_t skipped = !master->data_mode;
+
+	/* nobody else ends the pull-up; a shutdown ends waits, and a closed port forgets bytes */
+	if (adapter->strong &&
+	    !master->port->ops->write(master->port, end_pulse + skipped,
+	                              sizeof(end_pulse) - skipped) &&
+	    adapter_wait(adapter, END_NS))
+		clock_pause(END_NS);
 	adapter->strong = adapter->open = false;
 	master->port->ops->close(master->port);
 }

@@ -6,6 +6,7 @@
 
 #include "unity.h"
 
+#include "hal/base/time.h"
 #include "hal/native/native.h"
 #include "hal/sim/crc.h"
 #include "hal/sim/event.h"
@@ -32,6 +33,7 @@ static int set_speed(struct serial_port *port, unsigned baud)
 static int port_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 {
 	serial.writes++;
+	serial.written_ns = clock_ns(CLOCK_MONOTONIC);
 	if (serial.full)
 		return -ETIMEDOUT;
 	for (size_t i = 0; i < n && !is_gone(); i++)
@@ -77,6 +79,7 @@ static void port_break(struct serial_port *port)
 static void port_close(struct serial_port *port)
 {
 	(void)port;
+	serial.closed_ns = clock_ns(CLOCK_MONOTONIC);
 }
 
 static const struct serial_port_ops port_ops = {

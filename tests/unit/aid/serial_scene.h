@@ -14,9 +14,10 @@ struct serial_scene {
 	uint32_t baud;    /* that the driver has set */
 	uint64_t pull_at; /* the adapter is pulled after so many bytes; 0: never */
 	bool pulled, deaf_to_break;
-	bool babbles, full; /* something comes all the time; nothing is taken */
-	unsigned no_speed;  /* the port cannot have this one; 0: it can have all */
-	const char *proc;   /* where other programs are looked for: at /dev/null */
+	bool babbles, full;            /* something comes all the time; nothing is taken */
+	unsigned no_speed;             /* the port cannot have this one; 0: it can have all */
+	int64_t written_ns, closed_ns; /* by the machine's clock */
+	const char *proc;              /* where other programs are looked for: at /dev/null */
 	unsigned opens, writes, reads, breaks; /* writes, reads: calls */
 	struct link_master *master;
 	struct link *wire;

@@ -257,6 +257,52 @@ static void test_a_strong_pull_up_ends_with_the_port(void)
 	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
 }
 
+/* The command went out, and nobody waits for its answer; nor where the chip is led out after it. */
+static void test_a_strong_pull_up_that_was_not_answered_ends_with_the_port(void)
+{
+	for (unsigned calls = 1; calls <= 2; calls++) {
+		serial_start(SIM_DS2480B, &serial_ds2480b, house);
+		TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+		serial.host.shutdown = true;
+		TEST_ASSERT_EQUAL_INT(-ECANCELED, link_slot(serial.wire, true, LINK_STRONG));
+		if (calls == 2)
+			TEST_ASSERT_EQUAL_INT(-ECANCELED, part_reset(serial.wire));
+		TEST_ASSERT_TRUE(serial.net.chip[0].wire[0].strong);
+		serial.master->ops->close(serial.master);
+		TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+		/* a byte takes a ms, and is lost where the port is closed before */
+		TEST_ASSERT_GREATER_THAN_INT64(3 * HOST_MS, serial.closed_ns - serial.written_ns);
+		tearDown();
+		setUp();
+	}
+}
+
+/* What was to end it never went out, or did so and what followed was lost in the mode for data. */
+static void test_a_strong_pull_up_before_a_call_that_fails_ends_with_the_port(void)
+{
+	uint8_t byte = 0;
+
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_STRONG));
+	serial.full = true;
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, part_read(serial.wire, &byte, 1));
+	serial.full = false;
+	serial.master->ops->close(serial.master);
+	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+	tearDown();
+	setUp();
+	serial_start(SIM_DS2480B, &serial_ds2480b, house);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(1, link_slot(serial.wire, true, LINK_STRONG));
+	serial.host.shutdown = true;
+	TEST_ASSERT_EQUAL_INT(-ECANCELED, part_read(serial.wire, &byte, 1));
+	TEST_ASSERT_TRUE(serial.sim.data_mode);
+	serial.master->ops->close(serial.master);
+	TEST_ASSERT_FALSE(serial.net.chip[0].wire[0].strong);
+	TEST_ASSERT_FALSE(serial.sim.data_mode);
+}
+
 static void test_a_reset_or_a_bit_that_is_answered_wrong_is_an_error(void)
 {
 	serial_start(SIM_DS2480B, &serial_ds2480b, house);
@@ -569,6 +615,8 @@ int main(void)
 	RUN_TEST(test_the_strong_pull_up_lasts_until_the_next_call);
 	RUN_TEST(test_a_slot_is_read_and_may_be_followed_by_the_strong_pull_up);
 	RUN_TEST(test_a_strong_pull_up_ends_with_the_port);
+	RUN_TEST(test_a_strong_pull_up_that_was_not_answered_ends_with_the_port);
+	RUN_TEST(test_a_strong_pull_up_before_a_call_that_fails_ends_with_the_port);
 	RUN_TEST(test_a_reset_or_a_bit_that_is_answered_wrong_is_an_error);
 	RUN_TEST(test_a_byte_before_a_pull_up_that_the_wire_had_otherwise_is_an_error);
 	RUN_TEST(test_after_an_error_nothing_goes_on_without_a_reset);
