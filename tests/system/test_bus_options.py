@@ -17,17 +17,17 @@ ITEM = dict(Name="x", Path="/28.000000000001/temperature", Type="double")
 def documented():
     """Which kinds of target take each key, as the page says."""
     page = (SOURCE / "docs/owsd.rio.5").read_text()
-    page = page[page.index(".Sh BUS KEYS"):]
-    page = page[:page.index(".Sh ", 4)]
+    page = page[page.index(".SH BUS KEYS"):]
+    page = page[:page.index(".SH ", 4)]
     keys = {}
-    for text in page.split("\n.It Cm ")[1:]:
-        key, text = text.split("\n", 1)
-        said = re.search(r"^Of\n((?:\.Ql .*\n|and\n)+)", text, re.M)
+    for text in page.split("\n.TP\n\\fB")[1:]:
+        key, text = text.split("\\fR\n", 1)
+        said = re.match(r"Of (.*?):", text)
         if key != "Target":
             assert said, f"owsd.rio(5) does not say of which targets {key} is"
-            keys[key] = set(re.findall(r"\w+", re.sub(r"\.Ql|and\n", "", said[1])))
-    auto = re.search(r"^\.Ql i2c:auto\nhas\n((?:\.Cm .*\n|and\n)+)only", page, re.M)
-    for key in re.findall(r"\.Cm (\w+)", auto[1]):
+            keys[key] = set(re.findall(r"\\fB(\w+)", said[1]))
+    auto = re.search(r"target \\fBi2c:auto\\fR has (.*) only", page)
+    for key in re.findall(r"\\fB(\w+)", auto[1]):
         assert "i2c" in keys[key]
         keys[key].add("i2c:auto")
     return keys

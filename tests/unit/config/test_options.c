@@ -13,6 +13,7 @@
 #include "tests/unit/aid/said.h"
 
 #define MANUAL "docs/owsd.rio.5"
+#define KEY "\n.TP\n\\fB" /* before each key */
 
 static char *manual;
 static struct config *config;
@@ -39,29 +40,29 @@ static const char *keys_of(enum option_place place, const char **end)
 	char mark[40];
 	const char *begin;
 
-	snprintf(mark, sizeof(mark), "\n.Sh %s KEYS\n",
+	snprintf(mark, sizeof(mark), "\n.SH %s KEYS\n",
 	         place == PLACE_DRIVER ? "Driver" : option_place_name(place));
-	for (char *at = mark + strlen("\n.Sh "); *at; at++)
+	for (char *at = mark + strlen("\n.SH "); *at; at++)
 		*at = (char)toupper((unsigned char)*at);
 	begin = strstr(manual, mark);
 	TEST_ASSERT_NOT_NULL_MESSAGE(begin, mark);
-	*end = strstr(begin + 1, "\n.Sh ");
+	*end = strstr(begin + 1, "\n.SH ");
 	TEST_ASSERT_NOT_NULL_MESSAGE(*end, mark);
 	return begin;
 }
 
-/* The paragraph of a key, up to the next key or the end of the list; copied into section. */
+/* The paragraph of a key, up to the next key or section; copied into section. */
 static void find_section(const struct option_def *def, char *section, size_t size)
 {
 	char mark[96];
 	const char *begin, *end, *other, *last;
 
-	snprintf(mark, sizeof(mark), "\n.It Cm %s\n", def->key);
+	snprintf(mark, sizeof(mark), KEY "%s\\fR\n", def->key);
 	begin = strstr(keys_of(def->place, &last), mark);
 	TEST_ASSERT_TRUE_MESSAGE(begin && begin < last, def->key);
 	begin += strlen(mark);
-	end = strstr(begin, "\n.It Cm ");
-	other = strstr(begin, "\n.El");
+	end = strstr(begin, KEY);
+	other = strstr(begin, "\n.S");
 	if (!end || other < end)
 		end = other;
 	TEST_ASSERT_NOT_NULL_MESSAGE(end, def->key);
@@ -145,15 +146,13 @@ static void test_the_manual_has_every_key_with_default_and_limits(void)
 
 static void test_each_key_of_the_manual_is_a_row(void)
 {
-	static const char mark[] = "\n.It Cm ";
-
 	for (int place = PLACE_DRIVER; place < PLACE_COUNT; place++) {
 		const char *end, *at = keys_of((enum option_place)place, &end);
 		char key[64];
 
-		while ((at = strstr(at, mark)) && at < end) {
-			at += strlen(mark);
-			snprintf(key, sizeof(key), "%.*s", (int)strcspn(at, " \n"), at);
+		while ((at = strstr(at, KEY)) && at < end) {
+			at += strlen(KEY);
+			snprintf(key, sizeof(key), "%.*s", (int)strcspn(at, "\\"), at);
 			TEST_ASSERT_TRUE_MESSAGE(option_find((enum option_place)place, key) >= 0,
 			                         key);
 		}
@@ -162,7 +161,7 @@ static void test_each_key_of_the_manual_is_a_row(void)
 
 static void test_the_example_of_the_manual_is_a_configuration(void)
 {
-	const char *begin = strstr(manual, "\nOwsDrv {\n"), *end = strstr(manual, "\n.Ed");
+	const char *begin = strstr(manual, "\nOwsDrv {\n"), *end = strstr(manual, "\n.EE");
 
 	TEST_ASSERT_TRUE(begin && end && begin < end);
 	TEST_ASSERT_EQUAL_INT(0,
