@@ -22,14 +22,14 @@ CALLS = [
 
 
 def rows():
-    """Family codes, module, files used, files not used: of each row of the table."""
+    """Family codes, module, files used: of each row of the table."""
     text = (SOURCE / "docs/w1.md").read_text()
-    part = text.split("## Files of the drivers\n", 1)[1].split("\n## ", 1)[0]
+    part = text.split("## What there is\n", 1)[1].split("\n## ", 1)[0]
     for line in part.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
-        if line.startswith("|") and len(cells) == 4 and not set(cells[0]) <= set("- "):
+        if line.startswith("|") and len(cells) == 5 and not set(cells[0]) <= set("- "):
             if cells[0] != "family":
-                yield [re.findall(r"[\w.]+", cell.replace("`", " ")) for cell in cells]
+                yield [re.findall(r"[\w.]+", cell.replace("`", " ")) for cell in cells[:3]]
 
 
 def code_of(source):
@@ -50,7 +50,7 @@ def families_of(code):
 
 
 def test_each_family_of_a_driver_has_a_row(scene):
-    listed = {family.lower() for families, _, _, _ in rows() for family in families}
+    listed = {family.lower() for families, _, _ in rows() for family in families}
     for source in SOURCES:
         assert families_of(code_of(source)), source
         assert families_of(code_of(source)) <= listed, (source, listed)
@@ -61,21 +61,16 @@ def test_what_owsd_uses_of_a_driver_is_what_its_row_says(scene):
         code = code_of(source)
         families, files = families_of(code), files_of(code) - MASTER - RAW
         said = set()
-        for of, module, used, _ in rows():
+        for of, module, used in rows():
             if {family.lower() for family in of} & families:
                 assert set(used) <= files, f"{module}: {source}.c does not use {set(used) - files}"
                 said |= set(used)
         assert said == files, f"{source}.c uses {files - said}, which docs/w1.md does not say"
 
 
-def test_a_file_is_used_or_not(scene):
-    names = [module for _, module, used, unused in rows() if set(used) & set(unused)]
-    assert not names, names
-
-
 def test_a_driver_that_owsd_does_not_use_is_not_in_the_sources(scene):
     known = set().union(*(families_of(code_of(source)) for source in SOURCES))
-    for families, module, used, unused in rows():
+    for families, module, used in rows():
         if {family.lower() for family in families} & known:
             assert used, module
         elif module != ["none"]:
