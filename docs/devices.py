@@ -25,7 +25,7 @@ Property = collections.namedtuple(
 
 INTRO = """# The chips
 
-{count} families of chips, and any I2C sensor [behind a DS28E17 or DS28E18](bridges.md).
+{count} families of chips, and any I2C sensor [behind a DS28E17 (19) or DS28E18 (56)](bridges.md).
 `make devices-page` writes this page from the tables of the program, and a test compares them.
 
 - **No real chip was at hand.** Each was simulated bit by bit ([tested.md](tested.md)).
