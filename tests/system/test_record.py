@@ -149,6 +149,13 @@ def test_what_cannot_be_recorded_is_refused(scene):
     assert plain.returncode == 2 and "owsctl-sim" in plain.stderr, plain
 
 
+def test_a_verb_that_fails_is_tried_again_after_a_pause_and_a_misused_one_is_not(scene):
+    said = ctl(scene, "serial:/dev/null", "record", "--for", "2", "x", "scan", status=1).stderr
+    assert 2 <= said.count("no serial port") <= 4, said
+    said = ctl(scene, sim(scene), "record", "--for", "2", "x", "read", status=2).stderr
+    assert said.count("usage:") == 1, said
+
+
 def test_the_recordings_of_tests_traces_have_the_answers_that_they_had(scene):
     files = sorted(TRACES.glob("*.trace"))
     assert files

@@ -16,6 +16,7 @@
 #include "src/tool/owsctl/verbs.h"
 
 #define SHOWN_NS (NS_PER_S / 5) /* the pause between two prints of how far it is */
+#define FAILED_NS NS_PER_S      /* ... and after a failure: a target may be refused at once */
 
 static volatile sig_atomic_t interrupted;
 
@@ -54,20 +55,19 @@ static void write_command(FILE *file, const struct ctl *ctl, bool anonymous, cha
 	fputc('\n', file);
 }
 
-/* The verb, once or until the time is over; what it prints the first time alone. */
+/* The verb, once or until the time is over; its results are printed the first time alone. */
 static int record_verb(const struct trace *trace, int64_t until_ns, struct ctl *ctl, int argc,
                        char **argv)
 {
-	int status = ctl_run(ctl, argc, argv);
+	int status = ctl_run(ctl, argc, argv), last = status;
 
-	while (!interrupted && trace->left && ows_now() < until_ns) {
-		if (!freopen("/dev/null", "w", stdout))
+	while (last != CTL_USAGE && !interrupted && trace->left && ows_now() < until_ns) {
+		if (last)
+			clock_pause(FAILED_NS);
+		if (interrupted || !freopen("/dev/null", "w", stdout))
 			break;
-		int again = ctl_run(ctl, argc, argv);
-
-		if (again == CTL_USAGE)
-			break;
-		status = status ? status : again;
+		last = ctl_run(ctl, argc, argv);
+		status = status ? status : last;
 	}
 	return status;
 }
