@@ -2,7 +2,6 @@
 /* A program that is given a text, beside the loop of the face. */
 #include <errno.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -13,39 +12,13 @@
 
 #include "hal/base/time.h"
 #include "src/faces/notify/run.h"
+#include "src/ground/service/spawn.h"
 #include "src/ground/text/printable.h"
 #include "src/public/ows.h"
 
 #define LIVES_NS (60 * NS_PER_S)
 #define VARIABLES 128
 #define WORDS_MAX (1 << 20) /* they are in memory, and only the last line is wanted */
-
-static int spawn(struct run *run, const char *const *argv, int input, char **variables)
-{
-	posix_spawn_file_actions_t actions;
-	posix_spawnattr_t attributes;
-	sigset_t none, usual;
-	int err;
-
-	sigemptyset(&none);
-	sigemptyset(&usual);
-	sigaddset(&usual, SIGPIPE);
-	sigaddset(&usual, SIGXFSZ);
-	posix_spawn_file_actions_init(&actions);
-	posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-	posix_spawn_file_actions_adddup2(&actions, run->words, STDOUT_FILENO);
-	posix_spawn_file_actions_adddup2(&actions, run->words, STDERR_FILENO);
-	posix_spawnattr_init(&attributes);
-	posix_spawnattr_setsigmask(&attributes, &none);
-	posix_spawnattr_setsigdefault(&attributes, &usual);
-	posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
-	                                              POSIX_SPAWN_SETPGROUP);
-	err = posix_spawn(&run->pid, argv[0], &actions, &attributes, (char *const *)(uintptr_t)argv,
-	                  variables);
-	posix_spawnattr_destroy(&attributes);
-	posix_spawn_file_actions_destroy(&actions);
-	return -err;
-}
 
 int run_check(const char *path)
 {
@@ -87,7 +60,11 @@ int run_begin(struct run *run, const char *const *argv, const char *input, size_
 	else if (len && pwrite(file, input, len, 0) != (ssize_t)len)
 		err = -ENOMEM;
 	else
-		err = spawn(run, argv, file, variables);
+		err = spawn_begin(&(struct spawn){.words = argv,
+		                                  .streams = {file, run->words, run->words},
+		                                  .variables = variables,
+		                                  .own_group = true},
+		                  &run->pid);
 	if (file >= 0)
 		close(file);
 	if (err && run->words >= 0)

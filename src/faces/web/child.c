@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <limits.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,35 +14,11 @@
 
 #include "hal/base/time.h"
 #include "src/faces/web/child.h"
+#include "src/ground/service/spawn.h"
 #include "src/ground/text/printable.h"
 #include "src/public/ows.h"
 
 #define FILES 3
-
-/* What it reads, prints and says: files in memory, so that nothing has to be passed on. */
-static int spawn(const struct child *child, const char *path, const int *files, pid_t *pid)
-{
-	posix_spawn_file_actions_t actions;
-	posix_spawnattr_t attributes;
-	sigset_t none, usual;
-	int err;
-
-	sigemptyset(&none);
-	sigemptyset(&usual);
-	sigaddset(&usual, SIGPIPE);
-	posix_spawn_file_actions_init(&actions);
-	for (int i = 0; i < FILES; i++)
-		posix_spawn_file_actions_adddup2(&actions, files[i], i);
-	posix_spawnattr_init(&attributes);
-	posix_spawnattr_setsigmask(&attributes, &none);
-	posix_spawnattr_setsigdefault(&attributes, &usual);
-	posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-	err = posix_spawn(pid, path, &actions, &attributes, (char *const *)(uintptr_t)child->argv,
-	                  environ);
-	posix_spawnattr_destroy(&attributes);
-	posix_spawn_file_actions_destroy(&actions);
-	return -err;
-}
 
 /* In the folder of this program, as it is built and installed, else in bin beside that. */
 static int find_beside(const char *name, char path[PATH_MAX])
@@ -83,6 +58,7 @@ int child_start(const char *const *argv, pid_t *pid)
 	_exit(127);
 }
 
+/* What it reads, prints and says: files in memory, so that nothing has to be passed on. */
 static int make_files(const struct child *child, int files[FILES])
 {
 	size_t len = child->input_len;
@@ -158,7 +134,10 @@ int child_run(struct child *child)
 	if (!err)
 		err = find_beside(child->argv[0], path);
 	if (!err)
-		err = spawn(child, path, files, &pid);
+		err = spawn_begin(&(struct spawn){.words = child->argv,
+		                                  .path = path,
+		                                  .streams = {files[0], files[1], files[2]}},
+		                  &pid);
 	if (!err)
 		err = await(child, pid);
 	if (!err) {

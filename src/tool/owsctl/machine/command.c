@@ -4,42 +4,16 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "src/ground/service/spawn.h"
 #include "src/public/ows.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/machine/command.h"
-
-/* out: where its stdout goes, and stderr nowhere; -1: both stay. */
-static int spawn(const char *const words[], int out, pid_t *pid)
-{
-	posix_spawn_file_actions_t actions;
-	posix_spawnattr_t attributes;
-	sigset_t usual;
-	int err;
-
-	sigemptyset(&usual);
-	sigaddset(&usual, SIGPIPE);
-	sigaddset(&usual, SIGXFSZ);
-	posix_spawn_file_actions_init(&actions);
-	if (out >= 0) {
-		posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-		posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-	}
-	posix_spawnattr_init(&attributes);
-	posix_spawnattr_setsigdefault(&attributes, &usual);
-	posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-	err = posix_spawnp(pid, words[0], &actions, &attributes, (char *const *)(uintptr_t)words,
-	                   environ);
-	posix_spawnattr_destroy(&attributes);
-	posix_spawn_file_actions_destroy(&actions);
-	return -err;
-}
 
 static bool ended_well(pid_t pid)
 {
@@ -54,13 +28,15 @@ bool command_output(const char *const words[], int64_t until_ns, char *text, siz
 {
 	size_t len = 0;
 	ssize_t n = 1;
+	struct spawn spawn = {.words = words, .streams = {SPAWN_KEPT, SPAWN_KEPT, SPAWN_NOWHERE}};
 	int ends[2], err;
 	pid_t pid;
 
 	text[0] = '\0';
 	if (pipe2(ends, O_CLOEXEC))
 		return false;
-	err = spawn(words, ends[1], &pid);
+	spawn.streams[STDOUT_FILENO] = ends[1];
+	err = spawn_begin(&spawn, &pid);
 	close(ends[1]);
 	/* a command that has more to say than there is room for fails */
 	while (!err && n > 0 && len < size - 1) {
@@ -85,6 +61,8 @@ bool command_output(const char *const words[], int64_t until_ns, char *text, siz
 
 int command_run(const char *const words[], bool dry)
 {
+	const struct spawn spawn = {.words = words,
+	                            .streams = {SPAWN_KEPT, SPAWN_KEPT, SPAWN_KEPT}};
 	pid_t pid;
 	int err;
 
@@ -95,7 +73,7 @@ int command_run(const char *const words[], bool dry)
 	if (dry)
 		return 0;
 	fflush(stdout);
-	err = spawn(words, -1, &pid);
+	err = spawn_begin(&spawn, &pid);
 	if (err)
 		ctl_fail("%s: %s", words[0], strerror(-err));
 	else if (ended_well(pid))
