@@ -159,8 +159,8 @@ def page():
         code, chips = family["code"], names.get(family["code"], family["type"])
         others = [c for c in dict.fromkeys(family["kinds"] + family["simulated"])
                   if re.fullmatch(r"[A-Z]+\d\w*", c)]
-        out.append(line([code + "*" * (code in w1), ", ".join([chips, *(c for c in others if c not in chips and code != "7E")]),
-                         has(family), alarm(family)]))
+        others = [c for c in others if c not in chips and code != "7E"]
+        out.append(line([code + "*" * (code in w1), ", ".join([chips, *others]), has(family), alarm(family)]))
     return "\n".join([*out, ""])
 
 

@@ -185,10 +185,6 @@ def others(written):
             for other, of in sorted(by.items())]
 
 
-def row_of(cells):
-    return "| " + " | ".join(str(c or "") for c in cells) + " |"
-
-
 def chips():
     """{family: its usual chip}, of the one list of them."""
     text = (SOURCE / "hal/chips/families.h").read_text()
