@@ -81,11 +81,11 @@ def test_the_recipe_has_the_values_and_knows_when_there_are_none(scene):
     with Client(port) as plc:
         plc.becomes(3, GOOD)
     page = (SOURCE / "docs/plc.md").read_text().split("## LinuxCNC", 1)[1].split("\n## ", 1)[0]
-    command, recipe = re.search(r"```sh\nowsctl (.*) > owsd.ini\n```.*?```text\n(.*?)```", page, re.S).groups()
+    command = re.search(r"```sh\nowsctl (.*) > owsd.ini\n```", page)[1]
     written = scene.owsctl(daemon, *command.replace("192.168.1.10", f"127.0.0.1:{port}").split(), "-d", scene.path / "state")
     assert written.returncode == 0, written
     scene.file("owsd.ini", written.stdout)
-    hal = Hal(scene, recipe)
+    hal = Hal(scene, (SOURCE / "docs/examples/linuxcnc/mb2hal.hal").read_text())
     room1 = {"owsd.room1.quality.int": str(GOOD), "lincurve.0.out": "-3.3"}
     hal.becomes({"owsd.room.value.int": "215", "owsd.room.quality.int": str(GOOD), **room1, "and2.0.out": "TRUE"})
     # mb2hal would not start with a pin of that name
