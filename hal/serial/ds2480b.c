@@ -85,12 +85,6 @@ static void put_data(struct serial_master *master, struct stream *stream, uint8_
 	stream->in_n++;
 }
 
-/* After an error the mode is not known; nor is what is still to come. */
-static int lose(struct serial_master *master, int err)
-{
-	return adapter_lose(&master->adapter, err);
-}
-
 /* strong: the pull-up is on after it. After an error it may be, as it may where it was before. */
 static int send(struct serial_master *master, struct stream *stream, bool strong)
 {
@@ -100,10 +94,9 @@ static int send(struct serial_master *master, struct stream *stream, bool strong
 	int err = serial_exchange(master, BAUD, stream->out, stream->out_n, stream->in,
 	                          stream->in_n, &got);
 
-	if (err)
-		return lose(master, err);
-	master->adapter.strong = strong;
-	return 0;
+	if (!err)
+		master->adapter.strong = strong;
+	return err;
 }
 
 /* -ENXIO: the chip was without supply, and has forgotten its parameters. */
@@ -138,7 +131,6 @@ static int ds2480b_settle(struct adapter *adapter)
 		master->data_mode = adapter->strong = false;
 		err = ask_parameters(master);
 	}
-	adapter->lost = err != 0;
 	return err;
 }
 
@@ -153,7 +145,7 @@ static int judge_reset(struct serial_master *master, uint8_t answer)
 	master->adapter.cost.resets++;
 	master->adapter.cost.wire_ns += RESET_NS;
 	if (!is_chip(answer))
-		return lose(master, -EIO);
+		return -EIO;
 	switch (answer & RESULT) {
 	case SHORT:
 		return -ECOMM;
@@ -191,12 +183,12 @@ static int ds2480b_bits(struct adapter *adapter, uint8_t bits, unsigned n, bool 
 
 	master->adapter.cost.wire_ns += (uint64_t)n * SLOT_NS;
 	if (strong && answer[-1] != ENDLESS)
-		return lose(master, -ENXIO);
+		return -ENXIO;
 	for (unsigned i = 0; i < n; i++) {
 		unsigned line = answer[i] & RESULT;
 
 		if (((answer[i] ^ command[i]) & ~(unsigned)RESULT) || (line != 0 && line != RESULT))
-			return lose(master, -EIO);
+			return -EIO;
 		back |= (line != 0) << i;
 	}
 	return back;
@@ -221,24 +213,22 @@ static int ds2480b_pass(struct adapter *adapter, bool reset, const uint8_t *out,
 		return err;
 	master->adapter.cost.wire_ns += (out_n + in_n) * 8 * SLOT_NS;
 	if (out_n && memcmp(back, out, out_n) != 0)
-		return lose(master, -EIO);
+		return -EIO;
 	if (in_n)
 		memcpy(in, back + out_n, in_n);
 	return 0;
 }
 
 /* Two bits for each of an id: the direction or what was taken, and below it the conflict. */
-static int ds2480b_path(struct link *base, bool reset, uint8_t command, uint8_t rom[8],
+static int ds2480b_path(struct adapter *adapter, bool reset, uint8_t command, uint8_t rom[8],
                         uint8_t conflict[8])
 {
-	struct serial_master *master = serial_of(adapter_of(base));
+	struct serial_master *master = serial_of(adapter);
 	struct stream stream = {.out_n = 0};
 	uint8_t answer[16];
 	bool nobody = true;
-	int err = adapter_ready(&master->adapter, reset);
+	int err;
 
-	if (err)
-		return err;
 	if (reset)
 		put_command(master, &stream, RESET, true);
 	put_data(master, &stream, command);
@@ -260,7 +250,7 @@ static int ds2480b_path(struct link *base, bool reset, uint8_t command, uint8_t 
 		return err;
 	master->adapter.cost.wire_ns += UINT64_C(200) * SLOT_NS;
 	if (back[0] != command)
-		return lose(master, -EIO);
+		return -EIO;
 	memcpy(answer, back + 1, sizeof(answer));
 	memset(rom, 0, 8);
 	memset(conflict, 0, 8);
@@ -330,7 +320,7 @@ static int ds2480b_begin(struct serial_master *master, char *why, size_t why_siz
 	if (!err || err == -ETIMEDOUT) {
 		if (!got || !is_chip(answer[0])) {
 			explain(master, got, answer[0], why, why_size);
-			return lose(master, -ENXIO);
+			return -ENXIO;
 		}
 		err = serial_exchange(master, BAUD, parameters, sizeof(parameters), answer,
 		                      sizeof(parameters), &got);
@@ -340,10 +330,8 @@ static int ds2480b_begin(struct serial_master *master, char *why, size_t why_siz
 			err = -EIO;
 	if (err) {
 		snprintf(why, why_size, "%s: %s", master->adapter.name, strerror(-err));
-		return lose(master, err);
 	}
-	master->adapter.lost = false;
-	return 0;
+	return err;
 }
 
 static int ds2480b_renew(struct adapter *adapter)
@@ -355,7 +343,6 @@ static int ds2480b_renew(struct adapter *adapter)
 
 static const struct link_ops ds2480b_link = {
 	.name = "DS2480B",
-	.path = ds2480b_path,
 	ADAPTER_LINK_SLOTS,
 };
 
@@ -366,6 +353,7 @@ const struct serial_kind serial_ds2480b = {
                     .settle = ds2480b_settle,
                     .pass = ds2480b_pass,
                     .bits = ds2480b_bits,
+                    .path = ds2480b_path,
                     .renew = ds2480b_renew},
 	.lag_ns = 8 * SLOT_NS + 10 * NS_PER_S / BAUD,
 	.begin = ds2480b_begin,

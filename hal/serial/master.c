@@ -48,6 +48,7 @@ int serial_open(struct link_master *base, char *why, size_t why_size)
 	master->port->cost = &adapter->shared;
 	master->baud = 0;
 	adapter->open = true;
+	adapter->lost = false;
 	err = master->kind->begin(master, why, why_size);
 	if (err)
 		serial_close(base);

@@ -26,10 +26,7 @@ enum { RESET = 0xF0, ONE = 0xFF, ZERO = 0x00 };
 /* What still comes from before belongs to nothing. */
 static int passive_settle(struct adapter *adapter)
 {
-	int err = serial_settle(serial_of(adapter));
-
-	adapter->lost = err != 0;
-	return err;
+	return serial_settle(serial_of(adapter));
 }
 
 static int exchange(struct serial_master *master, unsigned baud, const uint8_t *out, uint8_t *in,
@@ -38,7 +35,7 @@ static int exchange(struct serial_master *master, unsigned baud, const uint8_t *
 	size_t got;
 	int err = serial_exchange(master, baud, out, n, in, n, &got);
 
-	return err ? adapter_lose(&master->adapter, err == -ENOTTY ? -EIO : err) : 0;
+	return err == -ENOTTY ? -EIO : err;
 }
 
 /*
@@ -58,7 +55,7 @@ static int reset(struct serial_master *master)
 	if (in == 0)
 		return -ECOMM;
 	if (in & 0x0F)
-		return adapter_lose(&master->adapter, -EIO);
+		return -EIO;
 	return in == RESET ? -EHOSTDOWN : 0;
 }
 
@@ -91,7 +88,7 @@ static int passive_pass(struct adapter *adapter, bool anew, const uint8_t *out, 
 		if (i / 8 >= out_n)
 			in[i / 8 - out_n] |= (uint8_t)((back[i] & 1) << i % 8);
 		else if ((back[i] ^ line[i]) & 1)
-			return adapter_lose(adapter, -EIO);
+			return -EIO;
 	}
 	return 0;
 }
@@ -147,7 +144,7 @@ static int follow(struct serial_master *master, uint8_t command, const uint8_t w
 			unsigned bit = (i - COMMAND) / 3;
 
 			if (what_is(i) == DIRECTION && ((back[i] ^ line[i]) & 1))
-				err = adapter_lose(&master->adapter, -EIO);
+				err = -EIO;
 			if (what_is(i) != COMPLEMENT)
 				continue;
 			unsigned is = back[i - 1] & 1, both = is == (back[i] & 1);
@@ -168,17 +165,15 @@ static int follow(struct serial_master *master, uint8_t command, const uint8_t w
 }
 
 /* In a search for alarms any of the known ones may be missing. */
-static int passive_path(struct link *base, bool anew, uint8_t command, uint8_t rom[8],
+static int passive_path(struct adapter *adapter, bool anew, uint8_t command, uint8_t rom[8],
                         uint8_t conflict[8])
 {
-	struct serial_master *master = serial_of(adapter_of(base));
+	struct serial_master *master = serial_of(adapter);
 	bool all = command == ONEWIRE_SEARCH;
 	int expected = anew && all ? known_expect(&master->known, rom) : -1;
 	uint8_t id[8] = {0};
-	int err = adapter_ready(&master->adapter, anew);
+	int err = anew ? reset(master) : 0;
 
-	if (!err && anew)
-		err = reset(master);
 	if (expected >= 0)
 		memcpy(id, master->known.id[expected], sizeof(id));
 	if (!err)
@@ -229,7 +224,6 @@ static int passive_begin(struct serial_master *master, char *why, size_t why_siz
 
 static const struct link_ops passive_link = {
 	.name = "passive adapter",
-	.path = passive_path,
 	ADAPTER_LINK_SLOTS,
 };
 
@@ -239,7 +233,8 @@ const struct serial_kind serial_passive = {
                     .piece = PIECE,
                     .settle = passive_settle,
                     .pass = passive_pass,
-                    .bits = passive_bits},
+                    .bits = passive_bits,
+                    .path = passive_path},
 	.lag_ns = SLOT_NS / 10, /* it comes as it goes: a bit for what the port's own time is off */
 	.begin = passive_begin,
 };

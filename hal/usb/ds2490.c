@@ -81,12 +81,6 @@ int ds2490_parse(const uint8_t *bytes, int n, struct ds2490_state *state)
 	return 0;
 }
 
-/* What the chip does now is not known: the next transaction clears its buffers. */
-static int lose(struct ds2490 *chip, int err)
-{
-	return adapter_lose(&chip->adapter, err);
-}
-
 static int control(struct ds2490 *chip, unsigned request, unsigned value, unsigned index)
 {
 	chip->adapter.shared.transfers++;
@@ -173,7 +167,6 @@ static int clean(struct ds2490 *chip, const uint8_t (*requests)[3], size_t n)
 	if (!err)
 		err = expect(chip, is_clean, true);
 	chip->adapter.strong &= err != 0;
-	chip->adapter.lost = err != 0;
 	return err;
 }
 
@@ -189,7 +182,7 @@ static int ds2490_renew(struct adapter *adapter)
 	struct ds2490 *chip = chip_of(adapter);
 	int err = chip->port->ops->clear(chip->port);
 
-	return err ? lose(chip, err) : clean(chip, requests, 4);
+	return err ? err : clean(chip, requests, 4);
 }
 
 /*
@@ -223,9 +216,7 @@ int ds2490_end_strong(struct ds2490 *chip)
 	int err = halt(chip, is_pulled_up, false);
 
 	chip->adapter.strong = err != 0;
-	if (!err)
-		err = control(chip, CONTROL, RESUME, 0);
-	return err ? lose(chip, err) : 0;
+	return err ? err : control(chip, CONTROL, RESUME, 0);
 }
 
 /* What a command is to have done when it has ended. */
@@ -274,7 +265,9 @@ static int finish(struct ds2490 *chip, const struct goal *goal, struct ds2490_st
 	state->results = results;
 	if (!err && goal->in && state->in != goal->in)
 		err = -EIO;
-	return err || (state->flags & HALTED) ? lose(chip, err) : 0;
+	if (!err)
+		chip->adapter.lost |= (state->flags & HALTED) != 0;
+	return err;
 }
 
 static int reset_wire(struct ds2490 *chip)
@@ -283,15 +276,14 @@ static int reset_wire(struct ds2490 *chip)
 	struct ds2490_state state;
 	int err = control(chip, COMMUNICATION, RESET_WIRE | NOW | FLUSH | TELL, 0);
 
-	if (err)
-		return lose(chip, err);
-	err = finish(chip, &goal, &state);
+	if (!err)
+		err = finish(chip, &goal, &state);
 	if (err)
 		return err;
 	chip->adapter.cost.resets++;
 	chip->tells |= state.told && !state.results;
 	if (state.in || state.out)
-		return lose(chip, -EIO); /* of another transaction */
+		return -EIO; /* of another transaction */
 	return state.results & SHORT ? -ECOMM : state.results & NOBODY ? -EHOSTDOWN : 0;
 }
 
@@ -309,10 +301,7 @@ static int take_back(struct ds2490 *chip, const struct goal *goal, uint8_t *byte
 	struct ds2490_state state;
 	int err = finish(chip, goal, &state);
 
-	if (err)
-		return err;
-	err = transfer(chip, USB_IN, bytes, goal->in);
-	return err ? lose(chip, err) : 0;
+	return err ? err : transfer(chip, USB_IN, bytes, goal->in);
 }
 
 static int ds2490_pass(struct adapter *adapter, bool reset, const uint8_t *out, size_t out_n,
@@ -332,9 +321,10 @@ static int ds2490_pass(struct adapter *adapter, bool reset, const uint8_t *out, 
 	err = transfer(chip, USB_OUT, bytes, goal.in);
 	if (!err)
 		err = control(chip, COMMUNICATION, BLOCK_IO | NOW | FLUSH, (unsigned)goal.in);
-	err = err ? lose(chip, err) : take_back(chip, &goal, bytes);
+	if (!err)
+		err = take_back(chip, &goal, bytes);
 	if (!err && out_n && memcmp(bytes, out, out_n) != 0)
-		err = lose(chip, -EIO);
+		err = -EIO;
 	if (!err && in_n)
 		memcpy(in, bytes + out_n, in_n);
 	return err;
@@ -354,7 +344,8 @@ static int ds2490_bits(struct adapter *adapter, uint8_t bits, unsigned n, bool s
 		command |= THEN_STRONG;
 	err = control(chip, COMMUNICATION, command | NOW | FLUSH, n == 1 ? 0 : bits);
 	adapter->strong = strong;
-	err = err ? lose(chip, err) : take_back(chip, &goal, &back);
+	if (!err)
+		err = take_back(chip, &goal, &back);
 	return err ? err : n == 1 ? back & 1 : back;
 }
 
@@ -363,34 +354,32 @@ static int ds2490_bits(struct adapter *adapter, uint8_t bits, unsigned n, bool s
  * says where it has left some behind, which has a 0 in the id. Where the id has the 1 that it was
  * asked for, they may differ or not.
  */
-static int ds2490_path(struct link *base, bool reset, uint8_t command, uint8_t rom[8],
+static int ds2490_path(struct adapter *adapter, bool reset, uint8_t command, uint8_t rom[8],
                        uint8_t conflict[8])
 {
 	const struct goal goal = {.wire_ns = 200 * SLOT_NS};
-	struct ds2490 *chip = chip_of(adapter_of(base));
+	struct ds2490 *chip = chip_of(adapter);
 	struct ds2490_state state;
 	uint8_t bytes[16] = {0};
-	int err = adapter_ready(&chip->adapter, reset);
+	int err = ready(chip, reset);
 
 	if (!err)
-		err = ready(chip, reset);
-	if (err)
-		return err;
-	err = transfer(chip, USB_OUT, rom, 8);
+		err = transfer(chip, USB_OUT, rom, 8);
 	if (!err)
 		err = control(chip, COMMUNICATION, SEARCH_ACCESS | NOW | LIST | FLUSH | CONFLICTS,
 		              1 << 8 | command);
-	err = err ? lose(chip, err) : finish(chip, &goal, &state);
+	if (!err)
+		err = finish(chip, &goal, &state);
 	if (err)
 		return err;
 	/* none of those whose presence pulse was seen answers: they were disturbed */
 	if (state.in == 0)
 		return command == ONEWIRE_SEARCH ? -EBADMSG : -EHOSTDOWN;
 	if (state.in != 8 && state.in != 16)
-		return lose(chip, -EIO);
+		return -EIO;
 	err = transfer(chip, USB_IN, bytes, state.in);
 	if (err)
-		return lose(chip, err);
+		return err;
 	for (unsigned i = 0; i < 8; i++) {
 		conflict[i] = bytes[8 + i] | (rom[i] & bytes[i]);
 		rom[i] = bytes[i];
@@ -413,7 +402,6 @@ int ds2490_begin(struct ds2490 *chip)
 
 static const struct link_ops ds2490_link = {
 	.name = "DS2490",
-	.path = ds2490_path,
 	ADAPTER_LINK_SLOTS,
 };
 
@@ -424,6 +412,7 @@ static const struct adapter_kind ds2490 = {
 	.settle = ds2490_settle,
 	.pass = ds2490_pass,
 	.bits = ds2490_bits,
+	.path = ds2490_path,
 	.renew = ds2490_renew,
 };
 

@@ -139,6 +139,7 @@ static int try_place(struct usb_master *master, const struct usb_place *place, b
 	if (err)
 		return err;
 	adapter->open = true;
+	adapter->lost = false;
 	master->place = *place;
 	snprintf(adapter->name, sizeof(adapter->name), USB_CALLED, place->name);
 	err = ds2490_begin(&master->chip);

@@ -15,18 +15,27 @@ void adapter_init(struct adapter *adapter, const struct adapter_kind *kind,
 	adapter->kind = kind;
 }
 
-int adapter_lose(struct adapter *adapter, int err)
+/* What a call of the kind returned. */
+static int judge(struct adapter *adapter, int result)
 {
-	adapter->lost = true;
-	return err;
+	adapter->lost |= result < 0 && result != -ECOMM && result != -EHOSTDOWN &&
+	                 result != -EBADMSG;
+	return result;
 }
 
-/* After an error what went before is not known. */
-int adapter_ready(struct adapter *adapter, bool anew)
+/* Before each call on the wire. anew: it begins with a reset, else what went before is needed. */
+static int ready(struct adapter *adapter, bool anew)
 {
 	if (!adapter->open)
 		return -ENODEV;
-	return !adapter->lost ? 0 : anew ? adapter->kind->settle(adapter) : -EIO;
+	if (!adapter->lost)
+		return 0;
+	if (!anew)
+		return -EIO;
+	int err = adapter->kind->settle(adapter);
+
+	adapter->lost = err != 0;
+	return err;
 }
 
 int adapter_wait(struct adapter *adapter, int64_t ns)
@@ -54,13 +63,14 @@ int adapter_run(struct link *base, const struct link_part *part)
 	bool reset = part->reset, strong = part->after == LINK_STRONG && part->out_n;
 	size_t out_n = part->out_n - strong, in_n = strong ? 0 : part->in_n;
 	size_t out_at = 0, in_at = 0;
-	int err = is_refused(adapter, part->after) ? -EOPNOTSUPP : adapter_ready(adapter, reset);
+	int err = is_refused(adapter, part->after) ? -EOPNOTSUPP : ready(adapter, reset);
 
 	while (!err && (reset || out_at < out_n || in_at < in_n)) {
 		size_t out = least(out_n - out_at, kind->piece);
 		size_t in = least(in_n - in_at, kind->piece - out);
 
-		err = kind->pass(adapter, reset, part->out + out_at, out, part->in + in_at, in);
+		err = judge(adapter, kind->pass(adapter, reset, part->out + out_at, out,
+		                                part->in + in_at, in));
 		reset = false;
 		out_at += out;
 		in_at += in;
@@ -69,15 +79,26 @@ int adapter_run(struct link *base, const struct link_part *part)
 		return err;
 	int back = kind->bits(adapter, part->out[out_n], 8, true);
 
-	return back < 0 ? back : back == part->out[out_n] ? 0 : adapter_lose(adapter, -EIO);
+	return judge(adapter, back < 0 ? back : back == part->out[out_n] ? 0 : -EIO);
 }
 
 int adapter_slot(struct link *base, bool out, enum link_after after)
 {
 	struct adapter *adapter = adapter_of(base);
-	int err = is_refused(adapter, after) ? -EOPNOTSUPP : adapter_ready(adapter, false);
+	int err = is_refused(adapter, after) ? -EOPNOTSUPP : ready(adapter, false);
 
-	return err ? err : adapter->kind->bits(adapter, out, 1, after == LINK_STRONG);
+	return err ? err
+	           : judge(adapter, adapter->kind->bits(adapter, out, 1, after == LINK_STRONG));
+}
+
+int adapter_path(struct link *base, bool reset, uint8_t command, uint8_t rom[8],
+                 uint8_t conflict[8])
+{
+	struct adapter *adapter = adapter_of(base);
+	int err = ready(adapter, reset);
+
+	return err ? err
+	           : judge(adapter, adapter->kind->path(adapter, reset, command, rom, conflict));
 }
 
 /* The supply of the wire is that of the adapter, which cannot be switched. */
@@ -93,7 +114,7 @@ int adapter_recover(struct link *base, enum link_rung rung)
 		return -EOPNOTSUPP;
 	if (rung == LINK_CHIP_RESET)
 		err = adapter->kind->renew(adapter);
-	adapter->lost |= rung == LINK_BUS_RESET;
+	adapter->lost = err || rung == LINK_BUS_RESET;
 	if (!err)
 		err = adapter_run(base, &reset);
 	return err == -EHOSTDOWN ? 0 : err;

@@ -12,10 +12,13 @@
 struct adapter;
 
 struct adapter_kind {
-	const struct link_ops *link; /* its name and its path; else ADAPTER_LINK_SLOTS */
+	const struct link_ops *link; /* its name, and ADAPTER_LINK_SLOTS */
 	struct link_facts facts;
 	size_t piece; /* bytes of pass() at most */
-	/* After an error: nothing of what was before is still to come, and commands are heeded. */
+	/*
+	 * Each returns an error of link.h. After one that does not say what the wire had, settle()
+	 * is next: nothing of what was before is still to come then, and commands are heeded.
+	 */
 	int (*settle)(struct adapter *adapter);
 	/*
 	 * A reset, if it is asked for; bytes that are written, which have come back as they were;
@@ -25,6 +28,9 @@ struct adapter_kind {
 	            uint8_t *in, size_t in_n);
 	/* A byte (n is 8) or a slot (1), and what follows it: what came back, or an error. */
 	int (*bits)(struct adapter *adapter, uint8_t bits, unsigned n, bool strong);
+	/* As link_ops.path. */
+	int (*path)(struct adapter *adapter, bool reset, uint8_t command, uint8_t rom[8],
+	            uint8_t conflict[8]);
 	/* Reset its chip and set it up. NULL: it has none. */
 	int (*renew)(struct adapter *adapter);
 };
@@ -55,10 +61,6 @@ static inline struct adapter *adapter_of(struct link *link)
 
 void adapter_init(struct adapter *adapter, const struct adapter_kind *kind,
                   const struct link_master_ops *ops, const struct bus_env *env);
-/* After an error that leaves open what the adapter does now. Returns it. */
-int adapter_lose(struct adapter *adapter, int err);
-/* Before each call on the wire. anew: it begins with a reset. */
-int adapter_ready(struct adapter *adapter, bool anew);
 /* Wait for a time. 0 or -ECANCELED. */
 int adapter_wait(struct adapter *adapter, int64_t ns);
 
@@ -66,10 +68,12 @@ int adapter_wait(struct adapter *adapter, int64_t ns);
 int adapter_recover(struct link *link, enum link_rung rung);
 int adapter_run(struct link *link, const struct link_part *part);
 int adapter_slot(struct link *link, bool out, enum link_after after);
+int adapter_path(struct link *link, bool reset, uint8_t command, uint8_t rom[8],
+                 uint8_t conflict[8]);
 void adapter_link_cost(const struct link *link, struct link_cost *cost);
 #define ADAPTER_LINK_SLOTS \
 	.recover = adapter_recover, .run = adapter_run, .slot = adapter_slot, \
-	.cost = adapter_link_cost
+	.path = adapter_path, .cost = adapter_link_cost
 
 /* Members of a struct link_master_ops. */
 void adapter_trouble(struct link_master *master, bool failed, char *text, size_t size);

@@ -24,15 +24,13 @@ static int note(const char *text)
 	snprintf(asked + strlen(asked), sizeof(asked) - strlen(asked), "%s%s", *asked ? ", " : "",
 	         text);
 	fails = 0;
-	return err ? adapter_lose(&adapter, err) : 0;
+	return err;
 }
 
 static int settle(struct adapter *base)
 {
-	int err = note("settle");
-
-	base->lost = err != 0;
-	return err;
+	(void)base;
+	return note("settle");
 }
 
 static int pass(struct adapter *base, bool reset, const uint8_t *out, size_t out_n, uint8_t *in,
@@ -62,6 +60,13 @@ static int bits(struct adapter *base, uint8_t byte, unsigned n, bool strong)
 	return err ? err : back;
 }
 
+static int path(struct adapter *base, bool reset, uint8_t command, uint8_t rom[8],
+                uint8_t conflict[8])
+{
+	(void)base, (void)reset, (void)command, (void)rom, (void)conflict;
+	return note("path");
+}
+
 static int renew(struct adapter *base)
 {
 	(void)base;
@@ -75,6 +80,7 @@ static const struct adapter_kind strong = {.link = &link_ops,
                                            .settle = settle,
                                            .pass = pass,
                                            .bits = bits,
+                                           .path = path,
                                            .renew = renew};
 static const struct adapter_kind weak = {
 	.link = &link_ops, .piece = 4, .settle = settle, .pass = pass, .bits = bits};
@@ -156,6 +162,36 @@ static void test_after_an_error_nothing_goes_on_until_it_is_settled_before_a_res
 	was_asked("bits 01 1 S");
 }
 
+static void test_errors_that_say_what_the_wire_had_leave_nothing_to_settle(void)
+{
+	static const int known[] = {-ECOMM, -EHOSTDOWN, -EBADMSG},
+			 others[] = {-EIO, -ETIMEDOUT, -ENXIO, -ENODEV, -ECANCELED};
+	uint8_t rom[8] = {0}, conflict[8];
+
+	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++) {
+		fails = known[i];
+		TEST_ASSERT_EQUAL_INT(known[i],
+		                      adapter_path(&adapter.link, true, 0xF0, rom, conflict));
+		was_asked("path");
+	}
+	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++) {
+		fails = others[i];
+		TEST_ASSERT_EQUAL_INT(others[i],
+		                      adapter_path(&adapter.link, true, 0xF0, rom, conflict));
+		was_asked("path");
+		TEST_ASSERT_EQUAL_INT(-EIO,
+		                      adapter_path(&adapter.link, false, 0xF0, rom, conflict));
+		was_asked("");
+		TEST_ASSERT_EQUAL_INT(0, adapter_path(&adapter.link, true, 0xF0, rom, conflict));
+		was_asked("settle, path");
+		fails = others[i];
+		TEST_ASSERT_EQUAL_INT(others[i], adapter_slot(&adapter.link, true, LINK_IDLE));
+		was_asked("bits 01 1");
+		TEST_ASSERT_EQUAL_INT(1, part_reset(&adapter.link));
+		was_asked("settle, pass R 0 0");
+	}
+}
+
 static void test_each_rung_ends_with_a_reset(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, adapter_recover(&adapter.link, LINK_BUS_RESET));
@@ -200,6 +236,7 @@ int main(void)
 	RUN_TEST(test_a_part_goes_in_pieces_and_its_reset_with_the_first);
 	RUN_TEST(test_the_byte_before_a_pull_up_goes_alone_and_has_to_come_back);
 	RUN_TEST(test_after_an_error_nothing_goes_on_until_it_is_settled_before_a_reset);
+	RUN_TEST(test_errors_that_say_what_the_wire_had_leave_nothing_to_settle);
 	RUN_TEST(test_each_rung_ends_with_a_reset);
 	RUN_TEST(test_one_without_chip_and_pull_up_says_so_and_does_nothing);
 	RUN_TEST(test_a_closed_one_is_gone);
