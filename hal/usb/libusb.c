@@ -143,7 +143,7 @@ static int explain(int err, const struct usb_place *place, int holder, char *why
 	};
 
 	snprintf(name, sizeof(name), USB_CALLED, place->name);
-	if (err == -ENOENT || err == -ENODEV) {
+	if (err == -ENOENT || err == -ENXIO || err == -ENODEV) {
 		snprintf(why, size, "%s is gone: is it plugged in?", name);
 		return -ENODEV;
 	}

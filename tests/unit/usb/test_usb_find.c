@@ -6,7 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "unity.h"
@@ -86,6 +88,9 @@ static void test_there_may_be_none_no_usb_or_more_than_anybody_has(void)
 static void test_one_that_has_gone_or_gives_no_rights_is_explained(void)
 {
 	const struct usb_place gone = {"1-1.4", "/dev/bus/usb/999/999", ""};
+	struct sockaddr_un at = {.sun_family = AF_UNIX};
+	int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	struct usb_place away = {"1-1.4", "", ""};
 	const struct usb_place none = {"1-1.4", "/dev/null", ""};
 	struct usb_port *port;
 	char why[256];
@@ -96,6 +101,14 @@ static void test_one_that_has_gone_or_gives_no_rights_is_explained(void)
 	TEST_ASSERT_NOT_NULL_MESSAGE(
 		strstr(why, err == -ENODEV ? "USB 1-1.4 is gone" : "libusb-1.0-0-dev"), why);
 	usb_linux.give_back(&gone);
+	/* as of a driver that was unloaded: open() returns the same of a socket */
+	snprintf(at.sun_path, sizeof(at.sun_path), "%s/socket", folder);
+	TEST_ASSERT_EQUAL_INT(0, bind(fd, (const struct sockaddr *)&at, sizeof(at)));
+	close(fd);
+	snprintf(away.device, sizeof(away.device), "%.40s", at.sun_path);
+	TEST_ASSERT_EQUAL_INT(err, usb_linux.open(&away, &port, why, sizeof(why)));
+	TEST_ASSERT_NOT_NULL_MESSAGE(
+		strstr(why, err == -ENODEV ? "USB 1-1.4 is gone" : "libusb-1.0-0-dev"), why);
 	TEST_ASSERT_NOT_EQUAL_INT(0, usb_linux.open(&none, &port, why, sizeof(why)));
 	usb_linux.give_back(&none);
 }
