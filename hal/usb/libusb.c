@@ -27,7 +27,7 @@
 #define QUICK 3 /* alternate setting: the state each ms, packets of 64 bytes */
 #define VENDOR 0x40
 
-struct adapter {
+struct opened {
 	struct usb_port port;
 	int fd;
 	libusb_context *context;
@@ -51,16 +51,16 @@ static int error_of(int err)
 
 static libusb_device_handle *handle_of(struct usb_port *port)
 {
-	return ((struct adapter *)port)->handle;
+	return ((struct opened *)port)->handle;
 }
 
-static int adapter_control(struct usb_port *port, uint8_t request, uint16_t value, uint16_t index)
+static int port_control(struct usb_port *port, uint8_t request, uint16_t value, uint16_t index)
 {
 	return error_of(libusb_control_transfer(handle_of(port), VENDOR, request, value, index,
 	                                        NULL, 0, USB_TIMEOUT_MS));
 }
 
-static int adapter_transfer(struct usb_port *port, uint8_t endpoint, uint8_t *bytes, size_t n)
+static int port_transfer(struct usb_port *port, uint8_t endpoint, uint8_t *bytes, size_t n)
 {
 	int done = 0, err;
 
@@ -73,7 +73,7 @@ static int adapter_transfer(struct usb_port *port, uint8_t endpoint, uint8_t *by
 	return err ? error_of(err) : done;
 }
 
-static int adapter_clear(struct usb_port *port)
+static int port_clear(struct usb_port *port)
 {
 	static const uint8_t endpoints[] = {USB_STATE, USB_OUT, USB_IN};
 	int err = 0;
@@ -83,7 +83,7 @@ static int adapter_clear(struct usb_port *port)
 	return err;
 }
 
-static int adapter_reset(struct usb_port *port)
+static int port_reset(struct usb_port *port)
 {
 	int err = libusb_reset_device(handle_of(port));
 
@@ -92,44 +92,44 @@ static int adapter_reset(struct usb_port *port)
 	return error_of(err);
 }
 
-static void adapter_close(struct usb_port *port)
+static void port_close(struct usb_port *port)
 {
-	struct adapter *adapter = (struct adapter *)port;
+	struct opened *opened = (struct opened *)port;
 
-	if (adapter->handle)
-		libusb_close(adapter->handle);
-	if (adapter->context)
-		libusb_exit(adapter->context);
-	if (adapter->fd >= 0) {
-		chip_unlock(adapter->fd, 0);
-		close(adapter->fd); /* and the interface is free */
+	if (opened->handle)
+		libusb_close(opened->handle);
+	if (opened->context)
+		libusb_exit(opened->context);
+	if (opened->fd >= 0) {
+		chip_unlock(opened->fd, 0);
+		close(opened->fd); /* and the interface is free */
 	}
-	free(adapter);
+	free(opened);
 }
 
-static const struct usb_port_ops adapter_ops = {
-	.control = adapter_control,
-	.transfer = adapter_transfer,
-	.clear = adapter_clear,
-	.reset = adapter_reset,
-	.close = adapter_close,
+static const struct usb_port_ops port_ops = {
+	.control = port_control,
+	.transfer = port_transfer,
+	.clear = port_clear,
+	.reset = port_reset,
+	.close = port_close,
 };
 
 /* The kernel's driver loses the interface, and cannot take it while this process has it. */
-static int claim(struct adapter *adapter)
+static int claim(struct opened *opened)
 {
 	int err = libusb_set_option(NULL, LIBUSB_OPTION_NO_DEVICE_DISCOVERY);
 
 	if (!err)
-		err = libusb_init(&adapter->context);
+		err = libusb_init(&opened->context);
 	if (!err)
-		err = libusb_wrap_sys_device(adapter->context, adapter->fd, &adapter->handle);
+		err = libusb_wrap_sys_device(opened->context, opened->fd, &opened->handle);
 	if (!err)
-		(void)libusb_detach_kernel_driver(adapter->handle, INTERFACE);
+		(void)libusb_detach_kernel_driver(opened->handle, INTERFACE);
 	if (!err)
-		err = libusb_claim_interface(adapter->handle, INTERFACE);
+		err = libusb_claim_interface(opened->handle, INTERFACE);
 	if (!err)
-		err = libusb_set_interface_alt_setting(adapter->handle, INTERFACE, QUICK);
+		err = libusb_set_interface_alt_setting(opened->handle, INTERFACE, QUICK);
 	return error_of(err);
 }
 
@@ -153,28 +153,26 @@ static int explain(int err, const struct usb_place *place, int holder, char *why
 	return -EBUSY;
 }
 
-static int adapter_open(const struct usb_place *place, struct usb_port **port, char *why,
-                        size_t size)
+static int port_open(const struct usb_place *place, struct usb_port **port, char *why, size_t size)
 {
-	struct adapter *adapter = calloc(1, sizeof(*adapter));
+	struct opened *opened = calloc(1, sizeof(*opened));
 	int holder = 0, err;
 
-	if (!adapter)
+	if (!opened)
 		return -ENOMEM;
-	adapter->port.ops = &adapter_ops;
-	adapter->fd = open(place->device, O_RDWR | O_CLOEXEC);
-	err = adapter->fd < 0 ? -errno : chip_lock(adapter->fd, 0, &holder);
+	opened->port.ops = &port_ops;
+	opened->fd = open(place->device, O_RDWR | O_CLOEXEC);
+	err = opened->fd < 0 ? -errno : chip_lock(opened->fd, 0, &holder);
 	if (!err)
-		err = usb_is_adapter(adapter->fd) ? claim(adapter) : -ENODEV;
+		err = usb_is_adapter(opened->fd) ? claim(opened) : -ENODEV;
 	if (!err)
-		*port = &adapter->port;
+		*port = &opened->port;
 	else
-		adapter_close(&adapter->port);
+		port_close(&opened->port);
 	return err ? explain(err, place, holder, why, size) : 0;
 }
 #else
-static int adapter_open(const struct usb_place *place, struct usb_port **port, char *why,
-                        size_t size)
+static int port_open(const struct usb_place *place, struct usb_port **port, char *why, size_t size)
 {
 	(void)place, (void)port;
 	snprintf(why, size,
@@ -203,7 +201,7 @@ static unsigned list(struct usb_place places[USB_PLACES])
 
 const struct usb_system usb_linux = {
 	.list = list,
-	.open = adapter_open,
+	.open = port_open,
 	.give_back = give_back,
 	.proc = RIVALS_PROC,
 };
