@@ -159,7 +159,7 @@ static int port_open(const struct usb_place *place, struct usb_port **port, char
 	int holder = 0, err;
 
 	if (!opened)
-		return -ENOMEM;
+		return explain(-ENOMEM, place, 0, why, size);
 	opened->port.ops = &port_ops;
 	opened->fd = open(place->device, O_RDWR | O_CLOEXEC);
 	err = opened->fd < 0 ? -errno : chip_lock(opened->fd, 0, &holder);

@@ -104,6 +104,8 @@ static int judge(struct usb_master *master, bool only, char *why, size_t size)
 	uint8_t rom[8] = {0};
 	int own = find_own(master, rom);
 
+	if (own == -ENODEV)
+		snprintf(why, size, "%s is gone: is it plugged in?", master->chip.adapter.name);
 	if (own == -ENODEV || own == -ECANCELED)
 		return own;
 	if (!master->rom[0]) {

@@ -226,6 +226,25 @@ static void test_one_that_does_not_show_its_own_chip_is_asked_again(void)
 	TEST_ASSERT_EQUAL_STRING("1-1", opened());
 }
 
+static void test_one_that_is_pulled_while_it_is_opened_is_named(void)
+{
+	int err = -ENODEV;
+
+	for (unsigned n = 1; err; n++) {
+		stick_add(first);
+		sticks_make("81.000000000001");
+		sticks.pulls = true;
+		sticks.fail_at = n;
+		sticks.why[0] = '\0';
+		err = sticks_try();
+		TEST_ASSERT_TRUE(!err || strstr(sticks.why, "the adapter at USB 1-1"));
+		TEST_ASSERT_TRUE(!err || err == -ENODEV);
+		TEST_ASSERT_TRUE(err || n > 10);
+		tearDown();
+		setUp();
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -239,5 +258,6 @@ int main(void)
 	RUN_TEST(test_two_targets_find_theirs);
 	RUN_TEST(test_one_that_does_not_show_its_own_chip_is_asked_again);
 	RUN_TEST(test_on_a_short_wire_the_only_one_is_taken_and_of_two_none);
+	RUN_TEST(test_one_that_is_pulled_while_it_is_opened_is_named);
 	return UNITY_END();
 }
