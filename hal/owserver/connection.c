@@ -15,6 +15,7 @@
 #include "hal/base/time.h"
 #include "hal/bus/tap.h"
 #include "hal/owserver/connection.h"
+#include "hal/owserver/listener.h"
 
 #define DEFAULT_HOST "localhost"
 #define DEFAULT_PORT "4304"
@@ -85,9 +86,16 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 /* Why the address that was tried last is of no use. Returns the error. */
 static int set_trouble(struct connection *connection)
 {
-	snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s%s",
-	         connection->peer, strerror(-connection->last_err),
-	         connection->last_err == -ECONNREFUSED ? "; does an owserver run there?" : "");
+	if (connection->stranger)
+		snprintf(
+			connection->trouble, sizeof(connection->trouble),
+			"%.36s: not believed, for the user %u serves it; a system user or root has to",
+			connection->peer, (unsigned)connection->stranger);
+	else
+		snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s%s",
+		         connection->peer, strerror(-connection->last_err),
+		         connection->last_err == -ECONNREFUSED ? "; does an owserver run there?"
+		                                               : "");
 	return connection->last_err;
 }
 
@@ -131,6 +139,7 @@ static void note_peer(struct connection *connection, const struct addrinfo *addr
 {
 	char host[48], port[8];
 
+	connection->stranger = 0;
 	if (getnameinfo(address->ai_addr, address->ai_addrlen, host, sizeof(host), port,
 	                sizeof(port), NI_NUMERICHOST | NI_NUMERICSERV))
 		return;
@@ -138,17 +147,44 @@ static void note_peer(struct connection *connection, const struct addrinfo *addr
 	         address->ai_family == AF_INET6 ? "[%s]:%s" : "%s:%s", host, port);
 }
 
+/* Of an address of this machine the kernel takes the same one for both ends, or 127.0.0.1. */
+static bool is_same_host(const struct sockaddr_storage *here, const struct sockaddr_storage *there)
+{
+	struct sockaddr_in v4, peer4;
+	struct sockaddr_in6 v6, peer6;
+
+	if (here->ss_family == AF_INET) {
+		memcpy(&v4, here, sizeof(v4));
+		memcpy(&peer4, there, sizeof(peer4));
+		return v4.sin_addr.s_addr == peer4.sin_addr.s_addr ||
+		       ntohl(peer4.sin_addr.s_addr) >> 24 == IN_LOOPBACKNET;
+	}
+	memcpy(&v6, here, sizeof(v6));
+	memcpy(&peer6, there, sizeof(peer6));
+	return memcmp(&v6.sin6_addr, &peer6.sin6_addr, sizeof(v6.sin6_addr)) == 0;
+}
+
 /*
- * Is the socket connected to itself? That happens with a port of this machine without a listener.
+ * Who is at the other end? -ECONNREFUSED: the socket itself, which happens with a port of this
+ * machine without a listener. -EPERM: a program of this machine that is not trusted. Else 0.
  */
-static bool is_itself(int fd)
+static int check_peer(struct connection *connection)
 {
 	struct sockaddr_storage here = {0}, there = {0};
 	socklen_t here_len = sizeof(here), there_len = sizeof(there);
+	uid_t user;
 
-	return getsockname(fd, (struct sockaddr *)&here, &here_len) == 0 &&
-	       getpeername(fd, (struct sockaddr *)&there, &there_len) == 0 &&
-	       here_len == there_len && memcmp(&here, &there, here_len) == 0;
+	if (getsockname(connection->fd, (struct sockaddr *)&here, &here_len) ||
+	    getpeername(connection->fd, (struct sockaddr *)&there, &there_len) ||
+	    !is_same_host(&here, &there))
+		return 0;
+	if (memcmp(&here, &there, here_len) == 0)
+		return -ECONNREFUSED;
+	if (listener_user("/proc/self/net", (struct sockaddr *)&there, &user) ||
+	    listener_is_trusted(user))
+		return 0;
+	connection->stranger = user;
+	return -EPERM;
 }
 
 /*
@@ -226,16 +262,14 @@ int connection_begin(struct connection *connection)
 	return err;
 }
 
-static int connect_result(const struct connection *connection)
+static int connect_result(struct connection *connection)
 {
 	int err = 0;
 	socklen_t len = sizeof(err);
 
 	if (getsockopt(connection->fd, SOL_SOCKET, SO_ERROR, &err, &len))
 		return -errno;
-	if (!err && is_itself(connection->fd))
-		return -ECONNREFUSED;
-	return -err;
+	return err ? -err : check_peer(connection);
 }
 
 int connection_go_on(struct connection *connection, int64_t until_ns)

@@ -2,13 +2,15 @@
 /*
  * A connection to one place, by TCP or on a unix socket. Nothing here blocks but through env->wait,
  * up to the deadline given (and the resolver, which knows no deadline). The name is resolved at
- * each connect, so a change of address is followed; all its addresses are tried in turn.
+ * each connect, so a change of address is followed; all its addresses are tried in turn. A server of
+ * this machine has to be one of a trusted user (listener.h).
  */
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "hal/bus/bus.h"
 
@@ -22,6 +24,7 @@ struct connection {
 	struct addrinfo *list, *next; /* while connecting; next is tried after this one */
 	int64_t give_up_ns;           /* the present address is tried until then */
 	int last_err;                 /* why the last address failed */
+	uid_t stranger;               /* who serves it and is not trusted; 0: nobody */
 	char peer[80];                /* "127.0.0.1:4304", once connected or tried */
 	char trouble[128];            /* why connecting failed, as a sentence */
 };

@@ -5,6 +5,7 @@
 import errno
 import os
 import subprocess
+import sys
 
 import owsdtest
 import peer
@@ -129,6 +130,45 @@ def test_genuine_by_name(scene):
     with Bus(scene, f"owserver:localhost:{server.port}") as bus:
         bus.ok("up")
         bus.ok("dir /")
+
+
+# What another user does: between the program and the owserver, at the other loopback address
+PROXY = """import os, socket, sys, threading
+os.setuid(12345)
+port = int(sys.argv[1])
+listener = socket.socket(socket.AF_INET6)
+listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+listener.bind(("::1", port))
+listener.listen()
+print("ready", flush=True)
+def pass_on(here, there):
+    while data := here.recv(4096):
+        there.sendall(data.replace(b"2", b"9"))
+while True:
+    client = listener.accept()[0]
+    server = socket.socket()
+    server.connect(("127.0.0.1", port))
+    for ends in ((client, server), (server, client)):
+        threading.Thread(target=pass_on, args=ends, daemon=True).start()
+"""
+
+
+def test_a_server_of_another_person_is_not_believed(scene):
+    owsdtest.need_ipv6()
+    if os.geteuid():
+        owsdtest.skip("only root becomes another user")
+    server = scene.owserver(tester=["28"])
+    target = f"localhost:{server.port}"
+    with subprocess.Popen([sys.executable, "-c", PROXY, str(server.port)], stdout=subprocess.PIPE,
+                          text=True) as proxy:
+        try:
+            assert proxy.stdout.readline() == "ready\n"
+            with Bus(scene, target) as bus:
+                assert f"127.0.0.1:{server.port}" in bus.ok("up")
+            asked = scene.owsctl(None, "-t", f"[::1]:{server.port}", "scan")
+            assert asked.returncode and "user 12345" in asked.stderr, asked
+        finally:
+            proxy.kill()
 
 
 def test_genuine_that_refuses_persistence_serves_all_the_same(scene):
