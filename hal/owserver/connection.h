@@ -2,8 +2,8 @@
 /*
  * A connection to one place, by TCP or on a unix socket. Nothing here blocks but through env->wait,
  * up to the deadline given (and the resolver, which knows no deadline). The name is resolved at
- * each connect, so a change of address is followed; all its addresses are tried in turn. A server of
- * this machine has to be one of a trusted user (listener.h).
+ * each connect, so a change of address is followed; all its addresses are tried in turn. A server
+ * of this machine has to be one of a trusted user (listener.h).
  */
 #pragma once
 
