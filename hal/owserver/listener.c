@@ -4,12 +4,13 @@
 #include <inttypes.h>
 #include <netinet/in.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "hal/owserver/listener.h"
 
-#define LISTENS 0x0A
+#define LISTENS "0A"
 #define LINES 4096          /* the listeners stand first */
 #define FIRST_PERSON 1000   /* UID_MIN of Debian; below: system users */
 #define FIRST_DYNAMIC 61184 /* DynamicUser of systemd */
@@ -73,16 +74,16 @@ static int look_in(const char *folder, const struct wanted *form, unsigned port,
 	if (!file)
 		return -ENOENT;
 	for (int n = 0; found && n < LINES && fgets(line, sizeof(line), file); n++) {
-		char address[33];
-		unsigned its_port, state, uid;
+		char address[33], its_port[5], state[3], uid[11];
 
-		if (sscanf(line, " %*u: %32[0-9A-F]:%4x %*[0-9A-F]:%*4x %2x %*s %*s %*s %u",
-		           address, &its_port, &state, &uid) != 4)
+		if (sscanf(line,
+		           " %*[0-9]: %32[0-9A-F]:%4[0-9A-F] %*s %2[0-9A-F] %*s %*s %*s %10[0-9]",
+		           address, its_port, state, uid) != 4)
 			continue;
-		if (state != LISTENS)
+		if (strcmp(state, LISTENS) != 0)
 			break;
-		if (its_port == port && strcmp(address, form->address) == 0) {
-			*user = uid;
+		if (strtoul(its_port, NULL, 16) == port && strcmp(address, form->address) == 0) {
+			*user = (uid_t)strtoul(uid, NULL, 10);
 			found = 0;
 		}
 	}

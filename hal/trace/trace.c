@@ -196,7 +196,7 @@ int trace_replay(struct trace **trace, const char *name, char *why, size_t why_s
 		snprintf(why, why_size, "%.100s is no recording: owsctl record makes one", name);
 		err = -EINVAL;
 	}
-	if (err) {
+	if (err || !lines->whole) {
 		trace_end(&lines->trace);
 		return err;
 	}

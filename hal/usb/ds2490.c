@@ -273,7 +273,7 @@ static int finish(struct ds2490 *chip, const struct goal *goal, struct ds2490_st
 static int reset_wire(struct ds2490 *chip)
 {
 	const struct goal goal = {.wire_ns = RESET_NS, .tells = true};
-	struct ds2490_state state;
+	struct ds2490_state state = {0};
 	int err = control(chip, COMMUNICATION, RESET_WIRE | NOW | FLUSH | TELL, 0);
 
 	if (!err)
@@ -298,7 +298,7 @@ static int ready(struct ds2490 *chip, bool reset)
 /* Bytes that were sent to the wire, as it had them. */
 static int take_back(struct ds2490 *chip, const struct goal *goal, uint8_t *bytes)
 {
-	struct ds2490_state state;
+	struct ds2490_state state = {0};
 	int err = finish(chip, goal, &state);
 
 	return err ? err : transfer(chip, USB_IN, bytes, goal->in);
@@ -359,7 +359,7 @@ static int ds2490_path(struct adapter *adapter, bool reset, uint8_t command, uin
 {
 	const struct goal goal = {.wire_ns = 200 * SLOT_NS};
 	struct ds2490 *chip = chip_of(adapter);
-	struct ds2490_state state;
+	struct ds2490_state state = {0};
 	uint8_t bytes[16] = {0};
 	int err = ready(chip, reset);
 

@@ -22,6 +22,7 @@ const char *shell_word(const char *word, char text[SHELL_WORD])
 		else
 			*out++ = *word;
 	}
-	strcpy(out, "'");
+	*out++ = '\'';
+	*out = '\0';
 	return text;
 }
