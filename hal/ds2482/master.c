@@ -12,6 +12,7 @@
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
+#include "hal/ds2482/select.h"
 
 static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
 {
@@ -57,6 +58,10 @@ static void close_adapter(struct ds2482_master *master)
 
 	if (!adapter)
 		return;
+	/* nobody else would end a strong pull-up */
+	for (unsigned i = 0; i < master->count; i++)
+		if (ds2482_claimed(&master->chip[i]) && !master->chip[i].lost)
+			(void)ds2482_end_strong(&master->chip[i]);
 	ds2482_cost(&master->master, &master->cost);
 	master->adapter = NULL;
 	adapter->ops->close(adapter);

@@ -46,8 +46,8 @@ int ds2482_select(struct ds2482_link *link)
 		return 0;
 	int err = select_channel(chip, link->number);
 	/* a strong pull-up belongs to the channel it was armed for; the chip ends it by itself */
-	if (!err && (chip->config & DS2482_SPU))
-		err = ds2482_configure(chip, (uint8_t)(chip->config & ~DS2482_SPU));
+	if (!err)
+		err = ds2482_end_strong(chip);
 	return err;
 }
 
@@ -66,6 +66,13 @@ bool ds2482_claimed(struct ds2482_chip *chip)
 	if (adapter->ops->claim(adapter, chip->address) == -EBUSY)
 		chip->lost = true;
 	return !chip->lost;
+}
+
+int ds2482_end_strong(struct ds2482_chip *chip)
+{
+	return chip->config & DS2482_SPU
+	               ? ds2482_configure(chip, (uint8_t)(chip->config & ~DS2482_SPU))
+	               : 0;
 }
 
 void ds2482_began(struct ds2482_chip *chip)

@@ -148,6 +148,22 @@ static void test_the_strong_pullup_feeds_a_parasite_until_the_next_call(void)
 	}
 }
 
+/* Nobody else would end it. */
+static void test_the_strong_pullup_ends_with_the_adapter_also_at_a_shutdown(void)
+{
+	for (unsigned i = 0; i < DS_KINDS; i++) {
+		ds_start(ds_kinds[i]);
+		TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
+		TEST_ASSERT_EQUAL_INT(1, link_slot(ds.wire, true, LINK_STRONG));
+		TEST_ASSERT_TRUE(ds.net.chip[0].wire[0].strong);
+		ds.host.shutdown = true;
+		ds.master->ops->close(ds.master);
+		TEST_ASSERT_FALSE(ds.net.chip[0].wire[0].strong);
+		ds.host.shutdown = false;
+		tearDown();
+	}
+}
+
 static void test_each_channel_of_an_800_is_its_own_wire(void)
 {
 	ds_start("chip DS2482-800 0x1a\nchannel 0\nDS2401 01.000000000001\n"
@@ -237,6 +253,7 @@ int main(void)
 	RUN_TEST(test_presence_nobody_and_a_short_are_told_apart);
 	RUN_TEST(test_triplets_and_bits_read_the_wire);
 	RUN_TEST(test_the_strong_pullup_feeds_a_parasite_until_the_next_call);
+	RUN_TEST(test_the_strong_pullup_ends_with_the_adapter_also_at_a_shutdown);
 	RUN_TEST(test_each_channel_of_an_800_is_its_own_wire);
 	RUN_TEST(test_one_chip_or_one_channel_is_opened_when_it_is_named);
 	RUN_TEST(test_a_where_that_is_none_is_refused);
