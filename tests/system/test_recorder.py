@@ -213,6 +213,11 @@ def test_trend_draws_and_lists_what_was_recorded(scene):
     assert lines[1].split()[0] == "9" and lines[8].split()[0] == "1", done
     assert any("\u2581" <= c <= "\u2588" for c in lines[1]), done
     assert lines[12] == "room (°C)" and len(lines) > 20, done
+    # one value all the time: what nobody recorded is blank above the line, too
+    bars, line = lines[13:21], lines[21]
+    known = {i for i, c in enumerate(line) if c == "─"}
+    drawn = {i for bar in bars for i, c in enumerate(bar) if "\u2581" <= c <= "\u2588"}
+    assert known and drawn == known, done
     done = scene.owsctl(daemon, *trend, "--csv", "relays", "title")
     rows = list(csv.DictReader(done.stdout.splitlines()))
     good = [(row["name"], row["value"]) for row in rows if row["quality"] == "good"]

@@ -324,8 +324,10 @@ def test_the_configuration_of_a_scan_runs_on_owserver_and_changes_no_output(scen
     path = next(d for d in server.devices() if d.startswith("/29")) + "/PIO.BYTE"
     before = server.read(path)
     assert before != "0"
-    rows = runs(scene, ctl(scene, server.target, "scan", "--rio").stdout)
+    scanned = ctl(scene, server.target, "scan", "--rio").stdout
+    rows = runs(scene, scanned)
     assert str(rows["outputs1"]["value"]) == before == server.read(path)
+    assert len(re.findall(r"InitValue +\"\d+\"\n +Start +last\n", scanned)) == 1, scanned
     bits = runs(scene, ctl(scene, server.target, "scan", "--rio", "--bits").stdout)
     assert before == server.read(path) and "outputs1" not in bits
     assert sum(bits[f"output{k + 1}"]["value"] << k for k in range(8)) == int(before), bits

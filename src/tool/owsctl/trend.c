@@ -78,7 +78,9 @@ static void print_bars(const struct ows_history_point *points, int width, double
 		else
 			printf("%*s", MARGIN, "");
 		for (int i = 0; i < width; i++) {
-			double part = range > 0 ? (points[i].max / 2 - low / 2) / range : 0.5;
+			/* of unknown time it is not a number, which draws nothing */
+			double height = points[i].max / 2 - low / 2;
+			double part = range > 0 ? height / range : height + 0.5;
 			double full = 1 + part * (HEIGHT * 8 - 1) - line * 8;
 
 			fputs(eighths[full > 0 ? (int)fmin(full, 8) : 0], stdout);

@@ -143,13 +143,16 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	const char *name = choose_name(names, device, property, element);
 	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
 	char *described = named ? NULL : rio_quote(device->alias);
-	char rate[48] = "", init[128] = "";
+	char rate[48] = "", init[160] = "";
 
 	if (property->per_factor)
 		snprintf(rate, sizeof(rate), "  PerFactor               %u\n",
 		         property->per_factor);
 	if (property->output)
-		snprintf(init, sizeof(init), "  InitValue               \"%s\"\n", value);
+		snprintf(init, sizeof(init),
+		         "  InitValue               \"%s\"\n"
+		         "  Start                   last\n",
+		         value);
 	fprintf(names->items,
 	        "%s# %s%s%s%s%s\n"
 	        "Item {\n"
@@ -162,7 +165,7 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	        ftell(names->items) > 0 ? "\n" : "", device->type,
 	        device->location[0] ? " on " : "", device->location,
 	        device->simulated ? " (simulated)" : "",
-	        property->output ? "; its InitValue is what it was set to when found" : "", name,
+	        property->output ? "; begins as it was found, later as it was last" : "", name,
 	        device->path, property->name, value_type_name(property->type),
 	        property->output ? "output" : "input",
 	        described ? "  Description             " : "", described ? described : "",
