@@ -23,7 +23,8 @@ int main(int argc, char **argv)
 	first = atoi(argv[2]);
 	count = atoi(argv[3]);
 	modbus = modbus_new_tcp("127.0.0.1", atoi(argv[1]));
-	if (!modbus || modbus_connect(modbus))
+	/* its own half second is over where other programs have the processor */
+	if (!modbus || modbus_set_response_timeout(modbus, 20, 0) || modbus_connect(modbus))
 		goto failed;
 	for (;;) {
 		n = modbus_read_registers(modbus, first, count, words);
