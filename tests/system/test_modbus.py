@@ -384,6 +384,33 @@ def test_each_option_changes_what_is_served_from_a_reload_on(scene):
     assert face.stop() == 0
 
 
+def test_an_address_that_cannot_be_served_is_shown_everywhere_until_it_is(scene):
+    port, other = owsdtest.free_port(), owsdtest.free_port()
+    daemon = scene.owsd(text(scene, port, ROOM))
+    face = serve(scene, daemon)
+    logged(face, f"Modbus is served at 127.0.0.1:{port}")
+
+    def shown(address, words):
+        """After a reload with that address: what owsctl reload, stats and doctor say of it."""
+        daemon.config.write_text(text(scene, other, ROOM, Listen=address))
+        done = scene.owsctl(daemon, "reload")
+        assert done.returncode == 0 and f"owsd-modbus: reloaded; {words}; " in done.stdout, done
+        stats = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)["faces"][0]
+        assert stats["trouble"].startswith(f"{words}; "), stats
+        until(lambda: f"; {words}\n" in scene.owsctl(daemon, "doctor").stdout, 20, "doctor has the status")
+        done = scene.owsctl(daemon, "doctor")
+        assert done.returncode == 1 and f"owsd-modbus says: {words}; " in done.stdout, done
+
+    shown(f"192.0.2.7:{other}", "no interface of this machine has 192.0.2.7")
+    with socket.create_server(("127.0.0.1", other)):
+        shown(f"127.0.0.1:{other}", f"cannot listen at 127.0.0.1:{other}: Address already in use")
+    logged(face, f"Modbus is served at 127.0.0.1:{other}")
+    until(lambda: json.loads(scene.owsctl(daemon, "--json", "stats").stdout)["faces"][0]["trouble"] is None, 20,
+          "what is mended is no trouble")
+    done = scene.owsctl(daemon, "reload")
+    assert "owsd-modbus: reloaded\n" in done.stdout, done
+
+
 def open_still(client):
     try:
         client.registers(0, 1)

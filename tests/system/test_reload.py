@@ -144,7 +144,7 @@ def test_a_reload_tells_who_asked_what_the_file_is_warned_of(scene):
         done = scene.owsctl(daemon, "reload")
         assert done.returncode == 0 and done.stderr == "", done
         assert done.stdout.startswith(f"owsd {daemon.name}: reloaded, with {number}; the first: {daemon.config}:{line}:"), done
-        assert words in done.stdout and done.stdout.endswith("; owsd --check shows all\n"), done
+        assert words in done.stdout and done.stdout.endswith("; owsd --check and owsctl doctor show all\n"), done
     daemon.config.write_text(rio(target, ROOM))
     assert scene.owsctl(daemon, "reload").stdout == f"owsd {daemon.name}: reloaded\n"
 

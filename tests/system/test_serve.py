@@ -374,9 +374,13 @@ def test_signals_do_not_wait_for_an_address_that_is_not_there_yet(scene):
     config = (folder / "house.rio").read_text().replace(
         "OwsDrv {", f'OwsDrv {{\n  Listen "{port}, 192.0.2.77:{port}, [2001:db8::77]:{port}"', 1)
     daemon = scene.owsd(config, "-t", f"sim:{folder}/house.sim")
-    for address in (f"192.0.2.77:{port}", f"[2001:db8::77]:{port}"):
-        text = f"Listen {address}: not an address of this machine now"
-        owsdtest.logged(daemon, text)
+    for address in ("192.0.2.77", "2001:db8::77"):
+        owsdtest.logged(daemon, f"no interface of this machine has {address}; ip addr lists")
+    until(lambda: stat(scene, daemon, "served_absent") == 2, 20, "they are counted")
+    done = scene.owsctl(daemon, "doctor")
+    assert done.returncode == 1 and "of Listen: no interface of this machine has " in done.stdout, done
+    done = scene.owsctl(daemon, "reload")
+    assert "reloaded, with 2 warnings; the first: no interface of this machine has 192.0.2.77" in done.stdout, done
     assert ask(port, READ, "/settings/return_codes/text.0")[4] == b"good"
 
 

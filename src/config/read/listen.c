@@ -187,6 +187,19 @@ void listen_print(const struct listen_address *address, char text[LISTEN_TEXT_MA
 	         (unsigned)address->port);
 }
 
+void listen_why(const struct listen_address *address, int err, char text[LISTEN_WHY_MAX])
+{
+	char at[LISTEN_TEXT_MAX];
+
+	if (err == -EADDRNOTAVAIL) {
+		listen_print_host(address, at);
+		snprintf(text, LISTEN_WHY_MAX, "no interface of this machine has %s", at);
+	} else {
+		listen_print(address, at);
+		snprintf(text, LISTEN_WHY_MAX, "cannot listen at %s: %s", at, strerror(-err));
+	}
+}
+
 void listen_peers_print(const struct listen_peers *peers, char text[LISTEN_TEXT_MAX])
 {
 	char host[INET6_ADDRSTRLEN] = "?";

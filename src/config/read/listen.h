@@ -52,4 +52,7 @@ void listen_sockaddr(const struct listen_address *address, struct sockaddr_stora
 bool listen_of(const struct sockaddr *from, struct listen_address *address);
 void listen_print(const struct listen_address *address, char text[LISTEN_TEXT_MAX]);
 void listen_print_host(const struct listen_address *address, char text[LISTEN_TEXT_MAX]);
+/* Why nobody is served there, without a remedy (ground/service/listen.h). */
+#define LISTEN_WHY_MAX 160
+void listen_why(const struct listen_address *address, int err, char text[LISTEN_WHY_MAX]);
 void listen_peers_print(const struct listen_peers *peers, char text[LISTEN_TEXT_MAX]);

@@ -170,6 +170,12 @@ const struct config *host_config(const struct host *host)
 	return host->now->config;
 }
 
+unsigned host_absent(struct host *h, char why[LISTEN_WHY_MAX])
+{
+	*why = '\0';
+	return h->serve ? serve_absent(h->serve, why) : 0;
+}
+
 bool host_stop(struct host *h, int64_t timeout_ns)
 {
 	bool stuck = false;

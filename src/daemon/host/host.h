@@ -35,6 +35,8 @@ void host_show_log(struct host *host, bool on);
 int64_t host_beat(const struct host *host);
 /* The longest time between two heartbeats of an engine that runs. The supervisor. */
 int64_t host_beats_apart(const struct host *host);
+/* As serve_absent(). The supervisor. */
+unsigned host_absent(struct host *host, char why[LISTEN_WHY_MAX]);
 /* The configuration that is served. */
 const struct config *host_config(const struct host *host);
 

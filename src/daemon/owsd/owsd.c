@@ -37,6 +37,7 @@
 #define STOP_NS (2 * NS_PER_S)
 /* How often the supervisor looks for the names of its files, and at a log that is stuck */
 #define SUPERVISE_NS NS_PER_S
+#define ADDRESSES_NS (2 * NS_PER_S)
 /* after the start: all targets were asked for their first values, as far as they answer */
 #define SETTLED_NS (10 * NS_PER_S)
 #define AGAIN_NS (20 * NS_PER_MS) /* a reload that has to wait */
@@ -201,9 +202,22 @@ static void name_targets(const struct config *config, char *text, size_t size)
 	}
 }
 
+/* What `systemctl status` shows. */
+struct shown {
+	const struct notify *notify;
+	char state[600];
+	unsigned absent; /* of host_absent() */
+	char why[LISTEN_WHY_MAX];
+};
+
+static void show_state(const struct shown *shown)
+{
+	notify_status(shown->notify, "%s%s%s", shown->state, *shown->why ? "; " : "", shown->why);
+}
+
 /* Report to the log and to the service manager what owsd serves. */
 static void report_served(const struct host *host, const struct arguments *a, struct log *log,
-                          const struct notify *notify)
+                          struct shown *shown)
 {
 	const struct config *config = host_config(host);
 	char targets[160];
@@ -212,24 +226,26 @@ static void report_served(const struct host *host, const struct arguments *a, st
 	log_notice(log, "owsd %s: instance %s, %u signal%s from %s, target %s", OWSD_VERSION,
 	           a->instance, config->item_count, config->item_count == 1 ? "" : "s",
 	           config->file, targets);
-	notify_status(notify, "%u signal%s, target %s", config->item_count,
-	              config->item_count == 1 ? "" : "s", targets);
+	snprintf(shown->state, sizeof(shown->state), "%u signal%s, target %s", config->item_count,
+	         config->item_count == 1 ? "" : "s", targets);
+	show_state(shown);
 }
 
 /* In why, for who asked: what the file that was taken over is warned of; "": of nothing. */
-static void name_warnings(const struct told *told, char *why, size_t why_size)
+static void name_warnings(const struct told *told, const struct shown *shown, char *why,
+                          size_t why_size)
 {
-	unsigned n = told->report.warnings;
+	unsigned n = told->report.warnings + shown->absent;
 
 	*why = '\0';
 	if (n)
 		snprintf(why, why_size, "%u warning%s; the first: %s", n, n == 1 ? "" : "s",
-		         told->warning);
+		         *told->warning ? told->warning : shown->why);
 }
 
 /* Load the file again and serve it; a file that is refused changes nothing. */
-static int reload_file(struct host *host, const struct arguments *a, struct log *log, char *why,
-                       size_t why_size)
+static int reload_file(struct host *host, const struct arguments *a, struct log *log,
+                       const struct shown *shown, char *why, size_t why_size)
 {
 	struct told told = {.log = log, .why = why, .why_size = why_size};
 	struct config *config;
@@ -244,28 +260,42 @@ static int reload_file(struct host *host, const struct arguments *a, struct log 
 		config_free(config);
 		log_err(log, "reload: %s: all goes on as before", why);
 	} else {
-		name_warnings(&told, why, why_size);
+		name_warnings(&told, shown, why, why_size);
 	}
 	return err;
 }
 
 static void reload(struct host *host, const struct arguments *a, struct log *log,
-                   const struct notify *notify)
+                   struct shown *shown)
 {
 	char why[512] = "";
 	int err;
 
-	notify_send(notify, NOTIFY_RELOADING);
+	notify_send(shown->notify, NOTIFY_RELOADING);
 	control_take_askers(host_control(host));
-	err = reload_file(host, a, log, why, sizeof(why));
+	err = reload_file(host, a, log, shown, why, sizeof(why));
 	if (!err) {
-		report_served(host, a, log, notify);
+		report_served(host, a, log, shown);
 	} else {
 		host_refused(host, err, why);
-		notify_status(notify, "reload refused, all goes on as before: %s", why);
+		snprintf(shown->state, sizeof(shown->state),
+		         "reload refused, all goes on as before: %s", why);
+		show_state(shown);
 	}
 	control_answer(host_control(host), err, why);
-	notify_send(notify, NOTIFY_READY);
+	notify_send(shown->notify, NOTIFY_READY);
+}
+
+/* Addresses of this machine come and go. */
+static void look_for_addresses(struct host *host, struct shown *shown)
+{
+	char why[LISTEN_WHY_MAX];
+
+	shown->absent = host_absent(host, why);
+	if (strcmp(why, shown->why) == 0)
+		return;
+	memcpy(shown->why, why, sizeof(why));
+	show_state(shown);
 }
 
 /* When the next reload may begin. */
@@ -283,11 +313,13 @@ static int64_t reload_after(int64_t begun_ns)
  * ends owsd, false when another owsd has the instance.
  */
 static bool supervise(struct host *host, const struct arguments *a, struct instance *instance,
-                      struct log *log, const struct notify *notify, int prefix,
+                      struct log *log, struct shown *shown, int prefix,
                       struct unix_signals *signals)
 {
+	const struct notify *notify = shown->notify;
 	const int bells[] = {log_bell(log), control_asked_bell(host_control(host))};
-	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS, drop_ns = ows_now() + SETTLED_NS;
+	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS, drop_ns = ows_now() + SETTLED_NS,
+		look_ns = 0;
 	bool wanted;
 
 	if (notify->watchdog_ns && notify->watchdog_ns / 4 < wait_ns)
@@ -298,7 +330,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 		wanted = control_asked(host_control(host)) || signals->reload;
 		if (wanted && now_ns >= reload_ns && host_may_reload(host)) {
 			signals->reload = wanted = false;
-			reload(host, a, log, notify);
+			reload(host, a, log, shown);
 			reload_ns = reload_after(now_ns);
 		}
 		now_ns = ows_now();
@@ -316,6 +348,10 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
 		if (!instance_keep(instance, log))
 			return false;
 		host_tend(host);
+		if (now_ns >= look_ns) {
+			look_ns = now_ns + ADDRESSES_NS;
+			look_for_addresses(host, shown);
+		}
 		log_drain(log, STDERR_FILENO, prefix);
 		unix_signals_wait(signals, bells, wanted ? AGAIN_NS : wait_ns);
 	}
@@ -335,6 +371,7 @@ static int owsd_run(const struct arguments *a, struct config *config, struct ins
 	};
 	int prefix = journal_is_stderr();
 	struct notify notify;
+	struct shown shown = {.notify = &notify};
 	struct host *host;
 	char why[512];
 	bool ended, ours;
@@ -348,9 +385,9 @@ static int owsd_run(const struct arguments *a, struct config *config, struct ins
 		return EXIT_RUN;
 	}
 	host_show_log(host, true);
-	report_served(host, a, log, &notify);
+	report_served(host, a, log, &shown);
 	notify_send(&notify, NOTIFY_READY);
-	ours = supervise(host, a, instance, log, &notify, prefix, signals);
+	ours = supervise(host, a, instance, log, &shown, prefix, signals);
 	log_notice(log, "owsd ends: %s",
 	           !ours                     ? "another process serves the instance"
 	           : signals->end == SIGTERM ? "SIGTERM"

@@ -60,29 +60,19 @@ static bool is_v6_only(const struct config_serve *config, const struct listen_ad
 static int open_network(struct serve *s, const struct listen_address *address)
 {
 	bool only = is_v6_only(&s->config->serve, address);
-	char text[LISTEN_TEXT_MAX];
 	struct sockaddr_storage to;
 	const int one = 1;
 	int fd;
 
 	listen_sockaddr(address, &to);
-	fd = listen_at_address(&to, only, false);
 	/* the machine may get the address later or never: signals do not wait for the network */
-	if (fd == -EADDRNOTAVAIL && !listen_is_loopback(address)) {
-		fd = listen_at_address(&to, only, true);
-		listen_print(address, text);
-		if (fd >= 0)
-			log_warning(s->log,
-			            "Listen %s: not an address of this machine now; it is served "
-			            "when it comes",
-			            text);
-	}
+	fd = listen_at_address(&to, only, !listen_is_loopback(address));
 	if (fd < 0)
 		return fd;
 	/* accepted sockets inherit both options */
 	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
 	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
-	return listener_add(s, fd, (struct listener){.network = true});
+	return listener_add(s, fd, (struct listener){.network = true, .at = *address});
 }
 
 /* The mode of a socket for this user and that group, if there is one. */
@@ -138,16 +128,15 @@ static bool may_miss(const struct serve *s, const struct listen_address *address
 static int open_configured(struct serve *s, char *why, size_t why_size)
 {
 	const struct config_serve *config = &s->config->serve;
-	char text[LISTEN_TEXT_MAX];
+	char text[LISTEN_WHY_MAX];
 	int err;
 
 	for (unsigned i = 0; i < config->address_count; i++) {
 		err = open_network(s, &config->addresses[i]);
 		if (!err || may_miss(s, &config->addresses[i], err))
 			continue;
-		listen_print(&config->addresses[i], text);
-		snprintf(why, why_size, "cannot listen at %s: %s%s", text, strerror(-err),
-		         listen_remedy(err));
+		listen_why(&config->addresses[i], err, text);
+		snprintf(why, why_size, "%s%s", text, listen_remedy(err));
 		return err;
 	}
 	if (!config->socket)

@@ -19,6 +19,7 @@
 #include "src/daemon/serve/work_directory.h"
 #include "src/daemon/serve/work_write.h"
 #include "src/ground/service/command_age.h"
+#include "src/ground/service/listen.h"
 #include "src/memory/shm/futex.h"
 #include "src/public/ows.h"
 
@@ -122,6 +123,33 @@ const struct bus_counter *serve_counters(const struct serve *s, size_t *n)
 {
 	*n = SERVE_COUNTER_COUNT;
 	return s->counters;
+}
+
+unsigned serve_absent(struct serve *s, char why[LISTEN_WHY_MAX])
+{
+	unsigned count = 0;
+
+	*why = '\0';
+	for (unsigned i = 0; i < s->listener_count; i++) {
+		const struct listen_address *at = &s->listeners[i].at;
+		uint32_t bit = (uint32_t)1 << i;
+		char text[LISTEN_WHY_MAX];
+		struct sockaddr_storage to;
+		bool absent;
+
+		listen_sockaddr(at, &to);
+		absent = s->listeners[i].network && !listen_is_here(&to);
+		listen_why(at, -EADDRNOTAVAIL, text);
+		if (absent && !(s->absent & bit))
+			log_warning(s->log, "%s%s", text, listen_remedy(-EADDRNOTAVAIL));
+		else if (!absent && s->absent & bit)
+			log_notice(s->log, "no longer: %s", text);
+		s->absent = absent ? s->absent | bit : s->absent & ~bit;
+		if (absent && !count++)
+			memcpy(why, text, sizeof(text));
+	}
+	__atomic_store_n(&s->counters[COUNT_absent].value, count, __ATOMIC_RELAXED);
+	return count;
 }
 
 /* --- The thread ------------------------------------------------------------------------------- */

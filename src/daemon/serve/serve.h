@@ -55,5 +55,11 @@ void serve_destroy(struct serve *serve);
 /* Any thread may call this. */
 const struct bus_counter *serve_counters(const struct serve *serve, size_t *n);
 
+/*
+ * How many addresses of Listen no interface of this machine has now; the first in why, else "". It
+ * logs those that come and go. One thread may call this, before serve_stop().
+ */
+unsigned serve_absent(struct serve *serve, char why[LISTEN_WHY_MAX]);
+
 /* May other machines write through this server? */
 bool serve_is_open(const struct config_serve *config);

@@ -119,7 +119,8 @@ struct client {
 	X(garbage)        /* frames that are no requests */ \
 	X(timeouts)       /* half requests, answers no client took, idle connections */ \
 	X(bytes_in)       /* bytes of clients */ \
-	X(bytes_out)      /* bytes to clients */
+	X(bytes_out)      /* bytes to clients */ \
+	X(absent)         /* addresses of Listen that no interface of this machine has now */
 
 enum serve_counter {
 #define X(name) COUNT_##name,
@@ -153,8 +154,9 @@ struct serve {
 
 	struct listener {
 		int fd;
-		bool network, own; /* own: NAME.sock in the directory of owsd's files */
-		int64_t came_ns;   /* who waits there came later than that */
+		bool network, own;        /* own: NAME.sock in the directory of owsd's files */
+		struct listen_address at; /* of network */
+		int64_t came_ns;          /* who waits there came later than that */
 	} listeners[SERVER_LISTENERS];
 	unsigned listener_count, listener_at; /* listener_at: the one that accepts first */
 	uint32_t waiting; /* listeners that may have connections, one bit each */
@@ -166,6 +168,7 @@ struct serve {
 		struct listener from;
 		struct sockaddr_in6 peer;
 	} held;
+	uint32_t absent; /* listeners at addresses that no interface has; serve_absent() */
 	int epoll_fd;
 
 	pthread_t thread;

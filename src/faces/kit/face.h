@@ -21,6 +21,7 @@
 
 #include "hal/base/time.h"
 #include "src/config/read/config.h"
+#include "src/config/read/listen.h"
 #include "src/faces/kit/arguments.h"
 #include "src/ground/service/notify.h"
 #include "src/ground/text/log.h"
@@ -118,6 +119,10 @@ struct face {
 	int64_t report_ns;
 	int64_t loaded_ns; /* when the configuration was read last */
 	char refused[256]; /* why it counts no more, though the one before does; "": it counts */
+
+	/* of listeners.c alone: where it should listen and does not, and what to do; "": nowhere */
+	char shut[LISTEN_WHY_MAX];
+	const char *shut_remedy;
 
 	/* of look.c alone */
 	struct ows_cursor cursor;

@@ -30,7 +30,7 @@
  * of a service, else OWS_DIR/INSTANCE.PROGRAM; without either there is none. Lines of a word and
  * its value: pid, beat (the boot time of the report, ns), status, loaded (that of the
  * configuration), refused (why it does not count); what face_ops.report writes: since (a boot
- * time), trouble, troubled (its boot time), count NAME NUMBER.
+ * time), trouble (the last one counts), troubled (its boot time), count NAME NUMBER.
  */
 static void report_open(struct face *face)
 {
@@ -75,6 +75,8 @@ static void report_write(struct face *face, int64_t now_ns)
 		fprintf(out, "refused %s\n", face->refused);
 	if (face->ops->report)
 		face->ops->report(face, out);
+	if (*face->shut)
+		fprintf(out, "trouble %s%s\n", face->shut, face->shut_remedy);
 	if (fclose(out) || rename(fresh, face->report))
 		unlink(fresh);
 }
@@ -120,10 +122,13 @@ void face_status(struct face *face, const char *format, ...)
 {
 	char text[sizeof(face->status)];
 	va_list args;
+	int len;
 
 	va_start(args, format);
-	vsnprintf(text, sizeof(text), format, args);
+	len = vsnprintf(text, sizeof(text), format, args);
 	va_end(args);
+	if (*face->shut && len >= 0 && len < (int)sizeof(text))
+		snprintf(text + len, sizeof(text) - (size_t)len, "; %s", face->shut);
 	if (strcmp(text, face->status) == 0)
 		return;
 	memcpy(face->status, text, sizeof(text));

@@ -20,5 +20,5 @@ void face_watch_anew(void *face, int fd, short events);
  * That is a second ago at most, but where the face did not run, or was busy. 0: not yet.
  */
 int64_t face_came(const struct face *face, int fd);
-/* What `systemctl status` shows. Sent only when it changes. */
+/* What `systemctl status` shows, with a door that is shut. Sent only when it changes. */
 void face_status(struct face *face, const char *format, ...) __attribute__((format(printf, 2, 3)));

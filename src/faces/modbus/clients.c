@@ -13,7 +13,6 @@
 #include "src/ground/service/listen.h"
 
 #define BATCH 64
-#define RETRY_NS (10 * NS_PER_S)
 /* A connection whose other end has gone without a word is closed after half a minute */
 #define KEEP_IDLE_S 15
 #define KEEP_EVERY_S 5
@@ -30,7 +29,7 @@ static int clients_watch(struct clients *c, int how, int fd, unsigned number, ui
 /* Numbers of epoll: a listener, or after these a client. */
 static unsigned number_of(const struct clients *c, const struct client *client)
 {
-	return LISTEN_MAX + (unsigned)(client - c->places);
+	return LISTENERS + (unsigned)(client - c->places);
 }
 
 static void drop(struct clients *c, struct client *client, const char *why)
@@ -249,7 +248,7 @@ static void pause_listeners(struct clients *c, int err, int64_t now_ns)
 		log_warning(c->face->log, "no client can connect: %s", strerror(-err));
 	c->full_err = err;
 	c->pause_ns = now_ns + LISTEN_PAUSE_NS;
-	listen_pause(c->epoll, c->listeners, c->listener_count);
+	listen_pause(c->epoll, c->listeners.fds, c->listeners.count);
 }
 
 /* True: nobody waits there any more. */
@@ -286,65 +285,33 @@ static bool accept_some(struct clients *c, int listener, int64_t now_ns)
 
 /* --- Of the face ----------------------------------------------------------------------------- */
 
+static void tell(struct face *face, const struct listen_address *at, bool served)
+{
+	bool local = listen_is_loopback(at);
+	char text[LISTEN_TEXT_MAX];
+
+	listen_print(at, text);
+	log_at(face->log, local || !served ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
+	       "Modbus is %s at %s%s", served ? "served" : "no longer served", text,
+	       local || !served ? "" : ": whoever reaches it may read");
+}
+
 int clients_open(struct clients *c)
 {
-	c->open_ns = INT64_MAX;
 	c->epoll = epoll_create1(EPOLL_CLOEXEC);
+	c->listeners.face = c->face;
+	c->listeners.epoll = c->epoll;
+	c->listeners.tell = tell;
+	c->listeners.look_ns = INT64_MAX;
 	return c->epoll < 0 ? -errno : face_watch(c->face, c->epoll, POLLIN);
-}
-
-static void shut_all(struct clients *c)
-{
-	for (unsigned i = 0; i < c->listener_count; i++)
-		if (c->listeners[i] >= 0)
-			close(c->listeners[i]);
-	c->listener_count = 0;
-}
-
-static void open_one(struct clients *c, unsigned i, int64_t now_ns)
-{
-	struct sockaddr_storage at;
-	char text[LISTEN_TEXT_MAX];
-	int fd, err;
-
-	listen_sockaddr(&c->at[i], &at);
-	fd = listen_at_address(&at, true, true);
-	err = fd < 0 ? fd : clients_watch(c, EPOLL_CTL_ADD, fd, i, EPOLLIN);
-	if (err && fd >= 0)
-		close(fd);
-	c->listeners[i] = err ? -1 : fd;
-	listen_print(&c->at[i], text);
-	if (err && err != c->open_err)
-		log_err(c->face->log, "cannot listen at %s: %s%s", text, strerror(-err),
-		        listen_remedy(err));
-	else if (!err)
-		log_at(c->face->log,
-		       listen_is_loopback(&c->at[i]) ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
-		       "Modbus is served at %s%s", text,
-		       listen_is_loopback(&c->at[i]) ? "" : ": whoever reaches it may read");
-	if (err) {
-		c->open_err = err;
-		c->open_ns = now_ns + RETRY_NS;
-	}
 }
 
 void clients_follow(struct clients *c, const struct config_modbus *options, int64_t now_ns)
 {
-	bool same = options->address_count == c->listener_count;
 	unsigned count;
 
 	c->most = options->clients;
-	for (unsigned i = 0; same && i < c->listener_count; i++)
-		same = listen_same(&options->addresses[i], &c->at[i]);
-	if (!same) {
-		shut_all(c);
-		c->open_ns = INT64_MAX;
-		c->open_err = 0;
-		memcpy(c->at, options->addresses, sizeof(c->at));
-		c->listener_count = options->address_count;
-		for (unsigned i = 0; i < c->listener_count; i++)
-			open_one(c, i, now_ns);
-	}
+	listeners_follow(&c->listeners, options->addresses, options->address_count, now_ns);
 	while (c->count > (options->given ? c->most : 0))
 		drop(c, most_silent(c, NULL, &count), "closed: the configuration has another");
 }
@@ -360,10 +327,10 @@ void clients_take(struct clients *c)
 	for (int i = 0; i < n; i++) {
 		unsigned number = events[i].data.u32;
 
-		if (number < LISTEN_MAX)
-			whole &= accept_some(c, c->listeners[number], began_ns);
-		else if (c->places[number - LISTEN_MAX].used)
-			turn(c, &c->places[number - LISTEN_MAX], began_ns);
+		if (number < LISTENERS)
+			whole &= accept_some(c, c->listeners.fds[number], began_ns);
+		else if (c->places[number - LISTENERS].used)
+			turn(c, &c->places[number - LISTENERS], began_ns);
 	}
 	if (whole) {
 		c->whole_ns = began_ns;
@@ -375,20 +342,15 @@ void clients_take(struct clients *c)
 
 int64_t clients_tick(struct clients *c, int64_t now_ns)
 {
-	int64_t next_ns;
+	int64_t next_ns = listeners_tick(&c->listeners, now_ns);
 
-	if (now_ns >= c->open_ns) {
-		c->open_ns = INT64_MAX;
-		for (unsigned i = 0; i < c->listener_count; i++)
-			if (c->listeners[i] < 0)
-				open_one(c, i, now_ns);
-	}
 	if (c->pause_ns && now_ns >= c->pause_ns) {
 		c->pause_ns = 0;
-		listen_resume(c->epoll, c->listeners, c->listener_count);
+		listen_resume(c->epoll, c->listeners.fds, c->listeners.count);
 		c->resumed_ns = ows_now();
 	}
-	next_ns = c->pause_ns && c->pause_ns < c->open_ns ? c->pause_ns : c->open_ns;
+	if (c->pause_ns && c->pause_ns < next_ns)
+		next_ns = c->pause_ns;
 	for (unsigned i = 0; c->count && i < CONFIG_MODBUS_CLIENTS; i++) {
 		struct client *client = &c->places[i];
 
@@ -409,6 +371,6 @@ void clients_close(struct clients *c)
 	for (unsigned i = 0; i < CONFIG_MODBUS_CLIENTS; i++)
 		if (c->places[i].used)
 			drop(c, &c->places[i], "closed: owsd-modbus ends");
-	shut_all(c);
+	listeners_follow(&c->listeners, NULL, 0, 0);
 	close(c->epoll);
 }

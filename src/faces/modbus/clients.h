@@ -7,6 +7,7 @@
 #pragma once
 
 #include "src/faces/kit/face.h"
+#include "src/faces/kit/listeners.h"
 #include "src/faces/modbus/answer.h"
 #include "src/ground/service/budget.h"
 
@@ -31,11 +32,8 @@ struct client {
 struct clients {
 	struct face *face;
 	int epoll; /* readable when clients_take() has something to do */
-	int listeners[LISTEN_MAX];
-	struct listen_address at[LISTEN_MAX]; /* what they were opened for */
-	unsigned listener_count, most, count;
-	int64_t open_ns; /* when to listen again where it failed; INT64_MAX: it did nowhere */
-	int open_err;
+	struct listeners listeners;
+	unsigned most, count;
 	uint64_t pass, whole_pass; /* looks at epoll; the last that saw all who were ready, */
 	int64_t whole_ns;          /* and its time */
 	int64_t nobody_ns;         /* nobody waited at a listener then */

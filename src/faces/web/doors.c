@@ -32,6 +32,8 @@ int doors_open(struct doors *doors)
 {
 	doors->visitors = calloc(DOORS_CONNECTIONS, sizeof(*doors->visitors));
 	doors->epoll = epoll_create1(EPOLL_CLOEXEC);
+	doors->listeners.epoll = doors->epoll;
+	doors->listeners.look_ns = INT64_MAX;
 	if (!doors->visitors)
 		return -ENOMEM;
 	return doors->epoll < 0 ? -errno : 0;
@@ -45,32 +47,12 @@ static int doors_watch(struct doors *doors, int fd, unsigned number, uint32_t ho
 	return epoll_ctl(doors->epoll, EPOLL_CTL_ADD, fd, &event) ? -errno : 0;
 }
 
-/* Takes fd in any case. at: of doors_address(), else NULL. */
-static int doors_add(struct doors *doors, int fd, const struct listen_address *at)
-{
-	unsigned i = 0;
-	int err;
-
-	while (i < doors->count && doors->fds[i] >= 0)
-		i++;
-	err = i == DOORS ? -ENOSPC : doors_watch(doors, fd, i, 0);
-	if (err) {
-		close(fd);
-		return err;
-	}
-	doors->fds[i] = fd;
-	doors->at[i] = at ? *at : (struct listen_address){0};
-	doors->by_address[i] = at != NULL;
-	doors->count += i == doors->count;
-	return 0;
-}
-
 int doors_inherit(struct doors *doors)
 {
-	int fds[DOORS], count = listen_inherited(fds, DOORS);
+	int fds[LISTENERS], count = listen_inherited(fds, LISTENERS);
 
 	for (int i = 0; i < count; i++) {
-		int err = doors_add(doors, fds[i], NULL);
+		int err = listeners_add(&doors->listeners, fds[i]);
 
 		if (err)
 			return err;
@@ -84,62 +66,10 @@ int doors_socket(struct doors *doors, const char *path)
 
 	if (fd < 0)
 		return fd;
-	err = doors_add(doors, fd, NULL);
+	err = listeners_add(&doors->listeners, fd);
 	if (!err)
 		snprintf(doors->path, sizeof(doors->path), "%s", path);
 	return err;
-}
-
-/* The door that was opened at that address; doors->count: none. */
-static unsigned door_at(const struct doors *doors, const struct listen_address *address)
-{
-	unsigned i = 0;
-
-	while (i < doors->count &&
-	       (doors->fds[i] < 0 || !doors->by_address[i] || !listen_same(&doors->at[i], address)))
-		i++;
-	return i;
-}
-
-int doors_address(struct doors *doors, struct listen_address *address)
-{
-	struct sockaddr_storage at;
-	socklen_t len = sizeof(at);
-	int fd, err;
-
-	listen_sockaddr(address, &at);
-	fd = listen_at_address(&at, true, false);
-	if (fd < 0)
-		return fd;
-	err = doors_add(doors, fd, address);
-	/* the port stands at the same place in both */
-	if (!err && getsockname(fd, (struct sockaddr *)&at, &len) == 0)
-		address->port = ntohs(((const struct sockaddr_in *)&at)->sin_port);
-	return err;
-}
-
-bool doors_has(const struct doors *doors, const struct listen_address *address)
-{
-	return door_at(doors, address) < doors->count;
-}
-
-bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned count,
-                struct listen_address *shut)
-{
-	for (unsigned i = 0; i < doors->count; i++) {
-		bool kept = doors->fds[i] < 0 || !doors->by_address[i];
-
-		for (unsigned k = 0; k < count; k++)
-			kept |= listen_same(&keep[k], &doors->at[i]);
-		if (kept)
-			continue;
-		epoll_ctl(doors->epoll, EPOLL_CTL_DEL, doors->fds[i], NULL);
-		close(doors->fds[i]);
-		doors->fds[i] = -1;
-		*shut = doors->at[i];
-		return true;
-	}
-	return false;
 }
 
 /* --- Visitors -------------------------------------------------------------------------------- */
@@ -238,7 +168,7 @@ static void welcome(struct doors *doors, const struct visitor *new, int64_t now_
 	}
 	while (doors->visitors[i].used)
 		i++;
-	if (doors_watch(doors, new->fd, DOORS + i, EPOLLET | EPOLLRDHUP)) {
+	if (doors_watch(doors, new->fd, LISTENERS + i, EPOLLET | EPOLLRDHUP)) {
 		crowd_leave(&doors->crowd, wire_close(new->fd));
 		return;
 	}
@@ -254,7 +184,7 @@ static void pause_doors(struct doors *doors, int64_t now_ns)
 {
 	doors->paused_ns = now_ns + LISTEN_PAUSE_NS;
 	doors->watched_ns = INT64_MAX;
-	listen_pause(doors->epoll, doors->fds, doors->count);
+	listen_pause(doors->epoll, doors->listeners.fds, doors->listeners.count);
 }
 
 /* What the kernel keeps of an answer counts as memory of this program: 1200 of these are 75 MB. */
@@ -320,27 +250,30 @@ void doors_take(struct doors *doors, int64_t now_ns)
 	for (int i = 0; i < n; i++) {
 		unsigned number = events[i].data.u32;
 
-		if (number < DOORS)
-			all &= accept_some(doors, doors->fds[number], now_ns);
-		else if (doors->visitors[number - DOORS].used)
-			look_at(doors, &doors->visitors[number - DOORS],
+		if (number < LISTENERS)
+			all &= accept_some(doors, doors->listeners.fds[number], now_ns);
+		else if (doors->visitors[number - LISTENERS].used)
+			look_at(doors, &doors->visitors[number - LISTENERS],
 			        events[i].events & (EPOLLRDHUP | EPOLLHUP | EPOLLERR));
 	}
 	if (all)
 		doors_empty(doors, began_ns);
+	listeners_tick(&doors->listeners, now_ns);
 	if (now_ns >= doors_next(doors))
 		end_late(doors, now_ns);
 	if (doors->paused_ns && now_ns >= doors->paused_ns) {
 		doors->paused_ns = 0;
-		listen_resume(doors->epoll, doors->fds, doors->count);
+		listen_resume(doors->epoll, doors->listeners.fds, doors->listeners.count);
 		doors->watched_ns = ows_now();
 	}
 }
 
 int64_t doors_next(const struct doors *doors)
 {
-	int64_t next_ns = doors->paused_ns ? doors->paused_ns : INT64_MAX;
+	int64_t next_ns = doors->listeners.look_ns;
 
+	if (doors->paused_ns && doors->paused_ns < next_ns)
+		next_ns = doors->paused_ns;
 	for (unsigned i = 0; doors->visitor_count && i < DOORS_CONNECTIONS; i++)
 		if (doors->visitors[i].used && doors->visitors[i].until_ns < next_ns)
 			next_ns = doors->visitors[i].until_ns;
@@ -353,9 +286,9 @@ void doors_close(struct doors *doors)
 		if (doors->visitors[i].used)
 			wire_close(doors->visitors[i].fd);
 	/* nobody has accepted what waits there, and what was sent along */
-	for (unsigned i = 0; i < doors->count; i++)
-		if (doors->fds[i] >= 0)
-			wire_close_listener(doors->fds[i]);
+	for (unsigned i = 0; i < doors->listeners.count; i++)
+		if (doors->listeners.fds[i] >= 0)
+			wire_close_listener(doors->listeners.fds[i]);
 	if (*doors->path)
 		unlink(doors->path);
 	if (doors->epoll >= 0)

@@ -9,25 +9,20 @@
 #include <stdint.h>
 #include <sys/socket.h>
 
-#include "src/config/read/listen.h"
+#include "src/faces/kit/listeners.h"
 #include "src/faces/web/crowd.h"
 
-#define DOORS (LISTEN_MAX + 1)
 #define DOORS_CONNECTIONS CROWD
 #define DOORS_PER_PEER 64 /* of one user at a socket, or one TCP address */
 #define DOORS_IDLE_S 30
 
-struct log;
 struct visitor;
 
 struct doors {
 	int64_t came_ns; /* what epoll reports now came later than that */
 	int64_t head_ns; /* and the head of the visitor who is let in */
 	int epoll;       /* readable when doors_take() has something to do; -1: not open */
-	int fds[DOORS];  /* -1: the place is free */
-	struct listen_address at[DOORS]; /* as it was asked for, if by_address */
-	bool by_address[DOORS];
-	unsigned count;
+	struct listeners listeners;
 	struct visitor *visitors; /* DOORS_CONNECTIONS */
 	unsigned visitor_count;
 	int64_t paused_ns;  /* no descriptor was left: listen again then; 0: it listens */
@@ -41,22 +36,12 @@ struct doors {
 	void *ctx;
 };
 
-/* Before the others; the functions and ctx are set. 0 or a negative errno. */
+/* Before the others; the functions, ctx, face and tell are set. 0 or a negative errno. */
 int doors_open(struct doors *doors);
 /* Listen: at the sockets of LISTEN_FDS (sd_listen_fds(3)); how many, or a negative errno. */
 int doors_inherit(struct doors *doors);
 /* At a path, with mode 0660, in place of a socket that nobody answers. -EADDRINUSE. */
 int doors_socket(struct doors *doors, const char *path);
-/* At an address; *address gets the port that the kernel chose. */
-int doors_address(struct doors *doors, struct listen_address *address);
-/* Is there a door that doors_address() has opened for that? */
-bool doors_has(const struct doors *doors, const struct listen_address *address);
-/*
- * Close one that doors_address() has opened and that is not among those to keep: true, and its
- * address in *shut. Connections stay. False: there is none.
- */
-bool doors_shut(struct doors *doors, const struct listen_address *keep, unsigned count,
-                struct listen_address *shut);
 /* At that time epoll had nothing to report: what comes now came later. */
 void doors_empty(struct doors *doors, int64_t looked_ns);
 /* Accept, read heads, refuse. Never blocks. */

@@ -100,55 +100,52 @@ static const char *serves(const struct config_web *options)
 	                              : ": whoever reaches it may look";
 }
 
-static void tell_address(const struct web *web, const struct listen_address *address)
+static void tell_address(struct face *face, const struct listen_address *address, bool served)
 {
-	bool local = listen_is_loopback(address), proxy = web->face->config->web.proxy_at.bits;
+	const struct web *web = face->own;
+	bool local = listen_is_loopback(address), proxy = face->config->web.proxy_at.bits;
 	char text[LISTEN_TEXT_MAX];
 
 	listen_print(address, text);
-	log_at(web->face->log, local || proxy ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
-	       "the page is at http://%s/%s", text, local && !proxy ? "" : web->serves);
+	if (served)
+		log_at(face->log, local || proxy ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
+		       "the page is at http://%s/%s", text, local && !proxy ? "" : web->serves);
+	else
+		log_notice(face->log, "the page is no longer at http://%s/", text);
 }
 
-static int open_address(struct web *web, struct listen_address address)
+/* What Listen says now: doors of the socket and of the service manager stay, as does that of -l. */
+static void follow_addresses(struct web *web)
 {
-	int err = doors_address(&web->doors, &address);
-	char text[LISTEN_TEXT_MAX];
+	const struct config_web *options = &web->face->config->web;
 
-	listen_print(&address, text);
-	if (err)
-		log_err(web->face->log, "the page is not at http://%s/: %s%s", text, strerror(-err),
-		        listen_remedy(err));
-	else
-		tell_address(web, &address);
-	return err;
+	if (!web->face->arguments->option)
+		listeners_follow(&web->doors.listeners, options->addresses, options->address_count,
+		                 ows_now());
 }
 
 /* Option -l, else Listen of the block. */
 static int open_addresses(struct web *web)
 {
-	const struct config_web *options = &web->face->config->web;
 	const char *given = web->face->arguments->option, *why = "";
 	struct listen_address addresses[2];
-	int err = 0, n;
+	int n = given ? listen_parse(given, strlen(given), addresses, &why) : 0;
 
-	if (!given) {
-		for (unsigned i = 0; i < options->address_count && !err; i++)
-			err = open_address(web, options->addresses[i]);
-		return err;
-	}
-	n = listen_parse(given, strlen(given), addresses, &why);
 	if (n < 0)
 		face_complain("owsd-web", "-l %s: %s", given, why);
-	for (int i = 0; i < n && !err; i++)
-		err = open_address(web, addresses[i]);
-	return n < 0 ? n : err;
+	else if (given)
+		listeners_follow(&web->doors.listeners, addresses, (unsigned)n, ows_now());
+	follow_addresses(web);
+	return n < 0 ? n : 0;
 }
 
 static int open_doors(struct web *web)
 {
-	int n = doors_open(&web->doors), err;
+	int n, err;
 
+	web->doors.listeners.face = web->face;
+	web->doors.listeners.tell = tell_address;
+	n = doors_open(&web->doors);
 	if (!n)
 		n = doors_inherit(&web->doors);
 	if (n < 0) {
@@ -166,28 +163,8 @@ static void follow_rights(struct web *web)
 	const char *before = web->serves;
 
 	web->serves = serves(&web->face->config->web);
-	for (unsigned i = 0; i < web->doors.count && strcmp(before, web->serves) != 0; i++)
-		if (web->doors.by_address[i] && web->doors.fds[i] >= 0)
-			tell_address(web, &web->doors.at[i]);
-}
-
-/* What Listen says now: doors of the socket and of the service manager stay, as does that of -l. */
-static void follow_addresses(struct web *web)
-{
-	const struct config_web *options = &web->face->config->web;
-	struct listen_address shut;
-	char text[LISTEN_TEXT_MAX];
-
-	if (web->face->arguments->option)
-		return;
-	/* first: the new one may be another address with the same port */
-	while (doors_shut(&web->doors, options->addresses, options->address_count, &shut)) {
-		listen_print(&shut, text);
-		log_notice(web->face->log, "the page is no longer at http://%s/", text);
-	}
-	for (unsigned i = 0; i < options->address_count; i++)
-		if (!doors_has(&web->doors, &options->addresses[i]))
-			open_address(web, options->addresses[i]);
+	if (strcmp(before, web->serves) != 0)
+		listeners_tell(&web->doors.listeners);
 }
 
 /* --- The page -------------------------------------------------------------------------------- */

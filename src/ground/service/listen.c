@@ -105,7 +105,7 @@ int listen_at_name(int directory, const char *name, int type, mode_t mode, gid_t
 	return listen_local(&at, type, mode, group);
 }
 
-int listen_at_address(const struct sockaddr_storage *at, bool only, bool later)
+static int listen_bind(const struct sockaddr_storage *at, bool only, bool later)
 {
 	bool is_v6 = at->ss_family == AF_INET6;
 	socklen_t len = is_v6 ? sizeof(struct sockaddr_in6) : sizeof(struct sockaddr_in);
@@ -120,11 +120,35 @@ int listen_at_address(const struct sockaddr_storage *at, bool only, bool later)
 	if (later)
 		setsockopt(fd, is_v6 ? IPPROTO_IPV6 : IPPROTO_IP,
 		           is_v6 ? IPV6_FREEBIND : IP_FREEBIND, &one, sizeof(one));
-	if (bind(fd, (const struct sockaddr *)at, len) == 0 && listen(fd, BACKLOG) == 0)
+	if (bind(fd, (const struct sockaddr *)at, len) == 0)
 		return fd;
 	err = -errno;
 	close(fd);
 	return err;
+}
+
+int listen_at_address(const struct sockaddr_storage *at, bool only, bool later)
+{
+	int fd = listen_bind(at, only, later), err;
+
+	if (fd < 0 || listen(fd, BACKLOG) == 0)
+		return fd;
+	err = -errno;
+	close(fd);
+	return err;
+}
+
+bool listen_is_here(const struct sockaddr_storage *at)
+{
+	struct sockaddr_storage any_port = *at;
+	int fd;
+
+	/* the port stands at the same place in both */
+	((struct sockaddr_in *)&any_port)->sin_port = 0;
+	fd = listen_bind(&any_port, true, false);
+	if (fd >= 0)
+		close(fd);
+	return fd != -EADDRNOTAVAIL;
 }
 
 int listen_inherited(int *fds, int most)
@@ -151,11 +175,12 @@ const char *listen_remedy(int err)
 	switch (-err) {
 	case EADDRINUSE:
 		return "; sudo ss -ltnp names the program that has the port: end it, or choose "
-		       "another port with Listen or -l";
+		       "another port";
 	case EACCES:
-		return "; ports below 1024 are root's: choose another with Listen or -l";
+		return "; ports below 1024 are root's: choose another";
 	case EADDRNOTAVAIL:
-		return "; this machine has no such address: ip addr lists those that it has";
+		return "; ip addr lists the addresses that this machine has: choose one of them, "
+		       "or give it this one";
 	default:
 		return "";
 	}

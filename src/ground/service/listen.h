@@ -31,6 +31,8 @@ int listen_at_name(int directory, const char *name, int type, mode_t mode, gid_t
  * that address yet.
  */
 int listen_at_address(const struct sockaddr_storage *at, bool only, bool later);
+/* Has an interface of this machine that address now? */
+bool listen_is_here(const struct sockaddr_storage *at);
 
 /*
  * The sockets that the service manager has opened for this process, as sd_listen_fds(3) has them:
@@ -39,7 +41,7 @@ int listen_at_address(const struct sockaddr_storage *at, bool only, bool later);
  */
 int listen_inherited(int *fds, int most);
 
-/* What to do when an address of Listen or -l cannot be had, to stand behind the error; or "". */
+/* What to do when an address cannot be had, to stand behind the error; or "". */
 const char *listen_remedy(int err);
 
 /*

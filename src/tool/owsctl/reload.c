@@ -49,6 +49,14 @@ static bool all_have_loaded(const struct faces_one *faces, unsigned count, int64
 	return true;
 }
 
+/* What its report says is wrong, since then; a program that is connected has told what is over. */
+static const char *trouble_since(const struct faces_one *face, int64_t begin_ns)
+{
+	bool old = face->since_ns || (face->trouble_ns && face->trouble_ns < begin_ns);
+
+	return old ? "" : face->trouble;
+}
+
 static void print_faces(const char *instance, int64_t begin_ns)
 {
 	struct faces_one faces[FACES_MOST];
@@ -60,6 +68,7 @@ static void print_faces(const char *instance, int64_t begin_ns)
 	}
 	for (unsigned i = 0; i < count; i++) {
 		const struct faces_one *face = &faces[i];
+		const char *trouble = trouble_since(face, begin_ns);
 
 		if (faces_silent(face, begin_ns))
 			printf("%s: does not run\n", face->program);
@@ -69,7 +78,7 @@ static void print_faces(const char *instance, int64_t begin_ns)
 		else if (*face->refused)
 			printf("%s: goes on as before: %s\n", face->program, face->refused);
 		else
-			printf("%s: reloaded\n", face->program);
+			printf("%s: reloaded%s%s\n", face->program, *trouble ? "; " : "", trouble);
 	}
 }
 
@@ -90,7 +99,8 @@ int verb_reload(struct ctl *ctl, int argc, char **argv)
 	if (err)
 		return reload_fail(ctl->instance, err);
 	if (*why)
-		printf("owsd %s: reloaded, with %s; owsd --check shows all\n", ctl->instance, why);
+		printf("owsd %s: reloaded, with %s; owsd --check and owsctl doctor show all\n",
+		       ctl->instance, why);
 	else
 		printf("owsd %s: reloaded\n", ctl->instance);
 	print_faces(ctl->instance, begin_ns);

@@ -118,6 +118,22 @@ static void test_an_address_of_another_machine_is_served_later_if_that_is_asked_
 	close(fd);
 }
 
+static void test_an_address_of_another_machine_is_not_here(void)
+{
+	struct sockaddr_storage to = {0};
+	struct sockaddr_in *v4 = (struct sockaddr_in *)&to;
+
+	*v4 = (struct sockaddr_in){.sin_family = AF_INET, .sin_addr.s_addr = htonl(0xc0000201)};
+	TEST_ASSERT_FALSE(listen_is_here(&to));
+	v4->sin_addr.s_addr = htonl(INADDR_ANY);
+	TEST_ASSERT_TRUE(listen_is_here(&to));
+	/* also with a port that this user may not have, or that is taken */
+	v4->sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+	v4->sin_port = htons(1);
+	TEST_ASSERT_TRUE(listen_is_here(&to));
+	TEST_ASSERT_EQUAL_UINT16(1, ntohs(v4->sin_port));
+}
+
 static void test_an_address_has_one_listener(void)
 {
 	struct sockaddr_storage to = {0}, from = {0};
@@ -229,6 +245,7 @@ int main(void)
 	RUN_TEST(test_a_path_that_no_address_has_room_for_is_refused);
 	RUN_TEST(test_at_a_name_of_a_folder_it_replaces_what_is_there);
 	RUN_TEST(test_an_address_of_another_machine_is_served_later_if_that_is_asked_for);
+	RUN_TEST(test_an_address_of_another_machine_is_not_here);
 	RUN_TEST(test_an_address_has_one_listener);
 	RUN_TEST(test_no_room_for_a_connection_is_no_error_of_it);
 	RUN_TEST(test_listeners_that_pause_are_not_ready);

@@ -12,6 +12,7 @@
 #include "src/faces/show/faces.h"
 #include "src/faces/show/stats.h"
 #include "src/faces/show/when.h"
+#include "src/ground/service/listen.h"
 #include "src/tool/owsctl/machine/seen.h"
 #include "src/tool/owsctl/machine/services.h"
 #include "src/tool/owsctl/machine/units.h"
@@ -105,6 +106,34 @@ static void check_refused(struct doctor *d)
 	               d->instance);
 }
 
+static bool has_counted(struct ows *ows, const char *name)
+{
+	struct ows_counter counter;
+
+	for (int i = 0; ows_counter(ows, i, &counter) == 0; i++)
+		if (!strcmp(counter.name, name))
+			return counter.value;
+	return false;
+}
+
+/* owsd says that there is one: it may have it from -l, and not from the file. */
+static void check_listen(struct doctor *d)
+{
+	const struct config_serve *serve = d->config ? &d->config->serve : NULL;
+	char why[LISTEN_WHY_MAX] = "no interface of this machine has an address of Listen";
+	struct sockaddr_storage at;
+
+	if (!has_counted(d->ows, "served_absent"))
+		return;
+	for (unsigned i = 0; serve && i < serve->address_count; i++) {
+		listen_sockaddr(&serve->addresses[i], &at);
+		if (!listen_is_here(&at))
+			listen_why(&serve->addresses[i], -EADDRNOTAVAIL, why);
+	}
+	report_add(&d->found, BOARD_MISSING, "owsd is not reached at all of Listen: %s", why);
+	report_remedy(&d->found, "%s", listen_remedy(-EADDRNOTAVAIL) + strlen("; "));
+}
+
 void check_owsd(struct doctor *d)
 {
 	const struct face_row service = {.program = "owsd"};
@@ -114,6 +143,7 @@ void check_owsd(struct doctor *d)
 	if (d->alive) {
 		check_twins(d);
 		check_refused(d);
+		check_listen(d);
 		ows_daemon(d->ows, d->now_ns, &daemon);
 		report_add(&d->found, BOARD_FACT,
 		           "instance %s: process %d, %d signal%s, %d not good", d->instance,
