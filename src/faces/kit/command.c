@@ -148,8 +148,8 @@ const char *face_refusal(const struct face_command *command, const struct ows_in
 	switch (-err) {
 	case EACCES:
 		snprintf(words, FACE_REFUSAL,
-		         "owsd refuses %s: add its user to the group owsd-control, or name it in "
-		         "ControlAllow",
+		         "owsd refuses %s: add its user to the group owsd-control and start it "
+		         "again, or name it in ControlAllow",
 		         command->program);
 		return words;
 	case ERANGE:

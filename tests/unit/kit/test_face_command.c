@@ -174,8 +174,8 @@ static void test_a_refusal_has_what_was_sent_and_what_holds(void)
 
 static void test_each_other_refusal_has_its_remedy(void)
 {
-	is("owsd refuses owsd-test: add its user to the group owsd-control, or name it in "
-	   "ControlAllow",
+	is("owsd refuses owsd-test: add its user to the group owsd-control and start it again, or "
+	   "name it in ControlAllow",
 	   -EACCES);
 	is("it may have waited for longer than 2 seconds: give it again", -ETIME);
 	is("owsd does not answer: does it run?", -ESTALE);
