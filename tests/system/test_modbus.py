@@ -245,6 +245,9 @@ def test_a_client_writes_what_it_may_and_the_journal_has_its_address(scene):
         daemon.config.write_text(text(scene, port, ROOM, RELAYS, **keys))
         assert scene.owsctl(daemon, "reload").returncode == 0
 
+    def counted(name):
+        return json.loads(scene.owsctl(daemon, "--json", "stats").stdout)["faces"][0]["counters"][name]
+
     with Client(port) as plc:
         plc.becomes(1, GOOD)
         assert refused(plc.write_one, 32 + SHORT, 1) == FUNCTION
@@ -262,10 +265,13 @@ def test_a_client_writes_what_it_may_and_the_journal_has_its_address(scene):
         commanded(scene, daemon, "1")
         plc.ask(struct.pack(">BHHBB", 15, 2, 1, 1, 0))
         commanded(scene, daemon, "0")
+        before = counted("refused")
         for number in (2.5, 256, -1, math.nan, math.inf):
             assert refused(plc.write, 32 + DOUBLE, ">d", number) == VALUE, number
         assert refused(plc.write, 16 + DOUBLE, ">d", 20) == ADDRESS  # an input
         assert refused(plc.write, 32 + DOUBLE, ">f", 20) == VALUE and refused(plc.write_one, 32 + QUALITY, 1) == ADDRESS
+        assert refused(plc.registers, 43003, 1) == ADDRESS  # no command
+        until(lambda: counted("refused") == before + 8, 20, lambda: f"{before} refused, then {counted('refused')}")
         journal = scene.owsctl(daemon, "--json", "journal").stdout
         assert '"modbus:127.0.0.1"' in journal and '"owsd-modbus"' in journal, journal
         logged(face, "command to relays of modbus:127.0.0.1 refused: ")
@@ -381,6 +387,8 @@ def test_each_option_changes_what_is_served_from_a_reload_on(scene):
     daemon.config.write_text(text(scene, None, ROOM))
     face.signal(signal.SIGHUP)
     logged(face, "has no Modbus block: nothing is served")
+    assert scene.owsctl(daemon, "reload").returncode == 0
+    assert face.log().count("has no Modbus block") == 1, face.log()
     assert face.stop() == 0
 
 

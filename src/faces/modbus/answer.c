@@ -274,6 +274,11 @@ static enum exception answer_pdu(struct exchange *x)
 	return EXCEPTION_FUNCTION;
 }
 
+bool frame_refused(const uint8_t *request, const uint8_t *answer)
+{
+	return request[FRAME_HEAD] > READ_REGISTERS && answer[FRAME_HEAD] & 0x80;
+}
+
 size_t frame_answer(const struct answer_source *source, const uint8_t *request,
                     uint8_t answer[FRAME_MOST])
 {

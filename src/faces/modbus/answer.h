@@ -41,3 +41,5 @@ int frame_length(const uint8_t *bytes, size_t n);
 /* Answer a whole one. Returns how long the answer is. */
 size_t frame_answer(const struct answer_source *source, const uint8_t *request,
                     uint8_t answer[FRAME_MOST]);
+/* Did a request that is none to read get an exception? Pure. */
+bool frame_refused(const uint8_t *request, const uint8_t *answer);

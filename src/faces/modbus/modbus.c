@@ -149,13 +149,16 @@ static size_t answer(void *ctx, const struct client *client, const uint8_t *requ
                      uint8_t answer[FRAME_MOST])
 {
 	struct modbus *m = ctx;
+	size_t len;
 
 	m->now_ns = ows_now();
 	m->client = client;
 	m->beats = false;
 	m->writing.count = 0;
 	writing_heard(&m->writing, &client->from, client->came_ns, false);
-	return frame_answer(&m->source, request, answer);
+	len = frame_answer(&m->source, request, answer);
+	m->refused += frame_refused(request, answer);
+	return len;
 }
 
 /* --- Places ---------------------------------------------------------------------------------- */
@@ -283,9 +286,10 @@ static void follow_file(struct modbus *m)
 {
 	const struct config_modbus *options = &m->face->config->modbus;
 
-	if (!options->given)
+	if (!options->given && !m->idle)
 		log_notice(m->face->log, "%s has no Modbus block: nothing is served",
 		           m->face->arguments->file);
+	m->idle = !options->given;
 	m->source.unit = options->unit;
 	m->source.little = !strcmp(options->word_order, "little");
 	m->source.exceptions = !strcmp(options->bad_value, "exception");
@@ -389,7 +393,7 @@ void modbus_report(struct face *face, FILE *out)
 	} counts[] = {
 		{"requests", m->clients.requests},
 		{"commands", m->writing.taken},
-		{"refused", m->clients.refused + m->writing.refused},
+		{"refused", m->clients.refused + m->refused},
 	};
 
 	for (size_t i = 0; i < sizeof(counts) / sizeof(counts[0]); i++)

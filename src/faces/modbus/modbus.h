@@ -29,6 +29,7 @@ struct modbus {
 	int lock;            /* of its directory; below 0: none */
 	unsigned signals, decimals;
 	bool known, kept; /* the map was read; it is in its file */
+	bool idle;        /* there is no block */
 	uint32_t generation;
 	uint16_t heart;
 	int64_t changed_s; /* UTC; 0: nothing has changed yet */
@@ -36,6 +37,7 @@ struct modbus {
 	int64_t now_ns;
 	const struct client *client;
 	bool beats;
+	uint64_t refused; /* requests that are none to read */
 };
 
 int modbus_open(struct face *face);

@@ -141,7 +141,6 @@ static void refuse(struct writing *w, const struct face_command *command,
 	char words[FACE_REFUSAL];
 	int64_t now_ns = ows_now();
 
-	w->refused++;
 	if (w->said_ns && now_ns - w->said_ns < SAY_NS)
 		return;
 	w->said_ns = now_ns;

@@ -28,7 +28,7 @@ struct writing {
 	const char *names[FRAME_WRITES_MOST];
 	double numbers[FRAME_WRITES_MOST];
 	int ids[FRAME_WRITES_MOST], count;
-	uint64_t taken, refused;
+	uint64_t taken;
 	int64_t said_ns; /* when the log had the last refusal */
 };
 

@@ -112,6 +112,8 @@ static size_t ask(uint8_t function, unsigned address, unsigned count)
 	TEST_ASSERT_EQUAL_INT((int)len, frame_length(answer, len));
 	TEST_ASSERT_EQUAL_MEMORY(request, answer, 4);
 	TEST_ASSERT_EQUAL_HEX8(9, answer[6]);
+	/* what is refused is a command */
+	TEST_ASSERT_EQUAL(function > 4 && len == FRAME_HEAD + 2, frame_refused(request, answer));
 	return len;
 }
 
