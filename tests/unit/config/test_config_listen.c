@@ -203,6 +203,17 @@ static void test_an_address_of_a_socket_is_the_one_that_was_made_of_it(void)
 	TEST_ASSERT_FALSE(listen_of((struct sockaddr *)&at, &got));
 }
 
+static void test_why_an_address_is_not_served_names_it(void)
+{
+	static const struct listen_address at = {.bytes = {10, 0, 0, 9}, .port = 502};
+	char words[LISTEN_WHY_MAX];
+
+	listen_why(&at, -EADDRINUSE, words);
+	TEST_ASSERT_EQUAL_STRING("cannot listen at 10.0.0.9:502: Address already in use", words);
+	listen_why(&at, -EADDRNOTAVAIL, words);
+	TEST_ASSERT_EQUAL_STRING("no interface of this machine has 10.0.0.9", words);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -215,5 +226,6 @@ int main(void)
 	RUN_TEST(test_nothing_behind_the_text_is_looked_at);
 	RUN_TEST(test_ranges_that_cannot_be_are_refused);
 	RUN_TEST(test_an_address_of_a_socket_is_the_one_that_was_made_of_it);
+	RUN_TEST(test_why_an_address_is_not_served_names_it);
 	return UNITY_END();
 }
