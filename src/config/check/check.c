@@ -189,6 +189,20 @@ static int64_t cached_ns(const struct check *check)
 	return life == LIFE_VOLATILE ? 2 * NS_PER_S : life == LIFE_SECOND ? NS_PER_S : 0;
 }
 
+/* Of an output that is not read in each cycle: would it be stale between two looks? */
+static void check_age_of_output(const struct check *check)
+{
+	const struct config_item *item = check->item;
+	double back = (double)item->read_back_ns / 1e9, stale = (double)item->stale_after_ns / 1e9;
+
+	if (item->stale_after_ns && item->stale_after_ns <= item->read_back_ns)
+		report_warning(
+			check->report, check->position,
+			"\"%s\" is stale before it is read back, each %g s: write StaleAfter "
+			"%g or more, or ReadBack %g",
+			item->name, back, back * 1.5, stale / 2);
+}
+
 /* Would its value be stale between two readings? */
 static void check_age(const struct check *check)
 {
@@ -200,6 +214,8 @@ static void check_age(const struct check *check)
 
 	if (!by_alarm)
 		every_ns *= cached_ns(check) / every_ns + 1;
+	if (!item->readable)
+		check_age_of_output(check);
 	if (!item->readable || !item->stale_after_ns || item->stale_after_ns > every_ns)
 		return;
 	often = often > 2 ? often : by_alarm ? 2 : 1;

@@ -52,7 +52,7 @@ static void check_off(struct build *build, const struct option_value *values)
 		             "%s is there and Alarm is not, and IOType %s has the unknown bits "
 		             "0x%04X: write Alarm on, or Alarm off if it is to do nothing",
 		             first->node->key, bits->text, (unsigned)unknown);
-	else
+	else if (build_sound(build))
 		report_warning(
 			build->report, first->node->at,
 			"%s does nothing %s: write Alarm on, or take the keys of the alarm out",

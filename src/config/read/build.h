@@ -19,7 +19,17 @@ struct build {
 	struct config_box *box;
 	struct config_report *report;
 	bool no_memory;
+	unsigned item_errors; /* errors of the report before this Item */
 };
+
+/*
+ * Nothing of this Item was refused so far. Else what its other keys do is not known, and a warning
+ * that one does nothing may only follow from the error.
+ */
+static inline bool build_sound(const struct build *build)
+{
+	return build->report->errors == build->item_errors;
+}
 
 /* A copy of the text in the arena; "" and no_memory set when there is no memory. */
 const char *build_keep(struct build *build, const char *text, size_t len);

@@ -220,10 +220,10 @@ static void build_start(struct build *build, const struct option_value *values,
 	if (item->starts_last && !item->output)
 		report_error(build->report, values[OPT_START].node->value_at,
 		             "Start \"last\": expected an output, and this is an input");
-	if (delay->given && !item->has_safe)
+	if (delay->given && !item->has_safe && build_sound(build))
 		report_warning(build->report, delay->node->at,
 		               "SafeDelay does nothing without SafeValue");
-	if (item->confirm && !config_item_takes_sets(item))
+	if (item->confirm && !config_item_takes_sets(item) && build_sound(build))
 		report_warning(build->report, values[OPT_CONFIRM].node->at,
 		               "Confirm does nothing: nobody sets this input");
 }
@@ -242,7 +242,7 @@ static void build_values(struct build *build, const struct option_value *values,
 		item->has_safe = safe->given && build_value(build, safe, item, &item->safe_value);
 	}
 	build_start(build, values, item);
-	if (item->has_safe && !item->output && !item->writable)
+	if (item->has_safe && !item->output && !item->writable && build_sound(build))
 		report_warning(build->report, safe->node->at,
 		               "SafeValue does nothing: this input is not Writable");
 	if (!values[OPT_READ_BACK].given)
@@ -312,7 +312,7 @@ static void limits_build(struct build *build, const struct option_value *values,
 	}
 	check_order(build, values);
 	check_hysteresis(build, values);
-	if (limits->any)
+	if (limits->any || !build_sound(build))
 		return;
 	for (unsigned i = 0; i < sizeof(beside) / sizeof(beside[0]); i++)
 		if (values[beside[i]].given)
@@ -329,6 +329,7 @@ void item_build(struct build *build, const struct rio_node *block, struct config
 	struct path path;
 	bool known;
 
+	build->item_errors = build->report->errors;
 	options_read(build, block, PLACE_ITEM, values, item);
 	item->line = block->at.line;
 	build_name(build, block, values, item);

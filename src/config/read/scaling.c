@@ -131,7 +131,7 @@ static void refuse_for_type(struct build *build, const struct option_value *valu
 static double of_input(struct build *build, const struct option_value *value,
                        const struct config_item *item)
 {
-	if (item->output && value->given)
+	if (item->output && value->given && build_sound(build))
 		report_warning(build->report, value->node->at,
 		               "%s does nothing: this Item is an output", value->node->key);
 	return item->output ? 0 : value->number;

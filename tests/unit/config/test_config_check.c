@@ -100,6 +100,9 @@ static void test_what_cannot_be_meant_is_named_with_its_remedy(void)
 	         AT
 	         " is stale before it is read again, each 0.2 s: write StaleAfter 0.3 or more, or "
 	         "PerFactor 1\n"},
+		{"Name x Path /29.B89115000000/PIO.0 Type bool IO output StaleAfter 5",
+	         AT " is stale before it is read back, each 10 s: write StaleAfter 15 or more, or "
+	            "ReadBack 2.5\n"},
 	};
 
 	expect_warnings(cases, COUNT(cases), check);

@@ -145,6 +145,25 @@ static void test_items_that_can_be_understood_are_only_warned_about(void)
 	expect_warnings(cases, COUNT(cases), parse_item);
 }
 
+/* Whether that is so shows when the line is right. */
+static void test_no_key_does_nothing_because_another_was_refused(void)
+{
+	static const char *const items[] = {
+		"Name x Path /a/b IOType 0x0021x SafeValue 1",
+		"Name x Path /a/b Type bool IO outpt SafeValue 1 Confirm on",
+		"Name x Path /a/b Type byte IO output SafeValue 300 SafeDelay 2",
+		"Name x Path /a/b Type double LimitH high Hysteresis 1",
+		"Name x Path /a/b Type bool Alarm onn LatchAlarm latch",
+		"Name x Path /a/b Type double IO output Scale x Filter 3",
+	};
+
+	for (size_t i = 0; i < COUNT(items); i++) {
+		parse_item(items[i]);
+		TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, "error: "), items[i]);
+		TEST_ASSERT_NULL_MESSAGE(strstr(said, "does nothing"), said);
+	}
+}
+
 static void test_the_bits_of_io_type_and_the_keys_that_override_them(void)
 {
 	static const struct {
@@ -370,6 +389,7 @@ int main(void)
 	RUN_TEST(test_wrong_items_are_errors_with_what_was_expected);
 	RUN_TEST(test_three_items_of_one_name_all_name_the_first);
 	RUN_TEST(test_items_that_can_be_understood_are_only_warned_about);
+	RUN_TEST(test_no_key_does_nothing_because_another_was_refused);
 	RUN_TEST(test_the_bits_of_io_type_and_the_keys_that_override_them);
 	RUN_TEST(test_paths_lose_their_flags_and_gain_a_slash);
 	RUN_TEST(test_start_values_are_typed_and_an_empty_one_is_none);
