@@ -49,7 +49,7 @@ def obeys(house):
 
 
 def refused(house):
-    logged(house.face, f"command to relay refused: {OLD}")
+    logged(house.face, f"command to \"relay\" refused: {OLD}")
     nothing_moved(house)
     obeys(house)
 
@@ -66,7 +66,7 @@ def test_nor_does_what_the_broker_holds_for_it(scene):
     house = ready(scene, lines=("allow_anonymous true", "max_inflight_messages 2"))
     house.set("relay", 0)
     held(house.face, lambda: [command(house, "relay", "on") for _ in range(12)])
-    logged(house.face, f"command to relay refused: {OLD}")
+    logged(house.face, f"command to \"relay\" refused: {OLD}")
     until(lambda: house.face.log().count("connected to") >= 2, 20, lambda: house.face.log())
     nothing_moved(house)
     obeys(house)
@@ -90,7 +90,7 @@ def test_nor_what_came_while_owsd_was_stopped(scene):
     house = ready(scene)
     house.set("relay", 0)
     held(house.daemon, lambda: command(house, "relay", "on"))
-    logged(house.face, "command to relay refused: ")
+    logged(house.face, "command to \"relay\" refused: ")
     time.sleep(0.5)  # it would move now
     nothing_moved(house)
     obeys(house)
@@ -125,7 +125,7 @@ def test_a_dcmd_with_an_old_stamp_moves_nothing_where_the_clock_is_right(scene):
     for n, stamps in enumerate(((now - 3600000, now - 3600000), (0, 0), (now, now - 3600000), (now - 3600000, None),
                                 (None, 0), (now - 70000, now)), 1):
         give_dcmd(house, *stamps)
-        until(lambda n=n: house.face.log().count("command to relay refused: its time stamp is more than a minute old") == n,
+        until(lambda n=n: house.face.log().count("command to \"relay\" refused: its time stamp is more than a minute old") == n,
               20, lambda: house.face.log())
     nothing_moved(house)
     for stamps in ((now, now), (now + 3600000, None), (None, None)):
@@ -143,7 +143,7 @@ def test_a_stamp_counts_for_nothing_where_the_clock_is_not_synchronised(scene):
 def test_a_dcmd_that_came_while_owsd_mqtt_was_stopped_moves_nothing(scene):
     house = sparkplug(scene, False)
     held(house.face, lambda: give_dcmd(house, int(time.time() * 1000)))
-    logged(house.face, f"command to relay refused: {OLD}")
+    logged(house.face, f"command to \"relay\" refused: {OLD}")
     nothing_moved(house)
 
 

@@ -124,7 +124,7 @@ def test_a_reload_is_for_the_group_owsd_config_and_gives_no_other_right(scene):
     assert done.returncode == 0 and done.stderr == "", done
     user = private.USERS["editor"][0]
     until(lambda: f", user {user})" in daemon.log(), 20, daemon.log)
-    assert "reload: asked for by owsctl (process" in daemon.log(), daemon.log()
+    assert 'reload: asked for by "owsctl" (process' in daemon.log(), daemon.log()
     daemon.config.write_text("OwsDrv {\n  No such thing\n")
     refused = ctl(scene, "editor", name, "reload")
     assert refused.returncode == 1 and "owsd refuses the configuration" in refused.stderr, refused

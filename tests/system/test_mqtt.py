@@ -184,9 +184,9 @@ def test_stats_show_the_broker_the_counters_and_what_was_wrong_last(scene):
     subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-t", "owsd/pi7/relay/set", "-m", "7"],
                    check=True, timeout=owsdtest.PATIENCE)
     found = becomes(lambda f: f["counters"]["commands_refused"] == 1)
-    assert 'command to relay refused: "7" is no value' in found["trouble"], found
+    assert 'command to "relay" refused: "7" is no value' in found["trouble"], found
     assert found["trouble_age"] < 60, found
-    assert re.search(r"last error \S+( \S+)? ago: command to relay refused", scene.owsctl(house.daemon, "stats").stdout)
+    assert re.search(r"last error \S+( \S+)? ago: command to \"relay\" refused", scene.owsctl(house.daemon, "stats").stdout)
     house.broker.process.stop()
     found = becomes(lambda f: not f["connected"] and " lost" in f["trouble"] or "cannot be reached" in f["trouble"])
     house.broker.start()

@@ -123,7 +123,7 @@ def test_a_signal_is_read_when_somebody_asks(scene):
     # a flood costs one reading in a period of 0.05 s
     reads, began = transactions(house, "room"), time.monotonic()
     many(house, "owsd/pi7/room/read", ["{}"] * 2000)
-    logged(house.face, "command to room refused: more than 50 commands in a second")
+    logged(house.face, "command to \"room\" refused: more than 50 commands in a second")
     until(lambda: transactions(house, "room") > reads, 20, "it is read")
     reads = transactions(house, "room") - reads
     assert reads <= 20 * (time.monotonic() - began) + 2, reads
@@ -294,7 +294,7 @@ def test_without_rename_a_broker_that_sends_one_unasked_is_refused(scene):
     with socket.create_server(("127.0.0.1", 0)) as listener:
         threading.Thread(target=serve, args=(listener,), daemon=True).start()
         house = House(scene, ROOM, Broker=f"mqtt://127.0.0.1:{listener.getsockname()[1]}")
-        logged(house.face, "command to room refused: Rename is off in the block Mqtt: set it to on there, and reload owsd")
+        logged(house.face, "command to \"room\" refused: Rename is off in the block Mqtt: set it to on there, and reload owsd")
         assert house.face.stop() == 0
 
 
@@ -302,7 +302,7 @@ def test_without_write_a_command_sets_nothing_and_the_log_says_why_and_what_to_d
     house = ready(scene, Write=raw("off"))
     house.set("relay", 0)
     command(house, "relay", "on")
-    logged(house.face, "command to relay refused: Write is off in the block Mqtt: set it to on there, and reload owsd")
+    logged(house.face, "command to \"relay\" refused: Write is off in the block Mqtt: set it to on there, and reload owsd")
     assert house.face.log().count(" refused: ") == 1, house.face.log()
     assert "owsd-mqtt" not in journal(house) and scene.get(house.daemon, "relay") == "0"
     house.arrives("health", lambda m: m["commands_refused"] == 1 and "Write is off" in m["trouble"])
@@ -321,9 +321,9 @@ def test_what_is_no_command_is_a_line_of_the_log_and_nothing_else(scene):
     health = house.arrives("health", lambda m: m["commands"] + m["commands_refused"] == len(cases))
     assert health["commands"] == 0, health
     assert "it is empty" in health["trouble"], health
-    assert "command to relay refused: \"maybe\" is no value for it: expected 0 or 1" in house.face.log(), house.face.log()
+    assert "command to \"relay\" refused: \"maybe\" is no value for it: expected 0 or 1" in house.face.log(), house.face.log()
     # nobody has to guess which of them was refused
-    assert "command to dial refused: \"201\" is no value for it: expected 0 to 200" in house.face.log(), house.face.log()
+    assert "command to \"dial\" refused: \"201\" is no value for it: expected 0 to 200" in house.face.log(), house.face.log()
     until(lambda: house.face.log().count(" refused: ") == len(cases), 20, lambda: house.face.log())
     assert scene.get(house.daemon, "dial") == "7" and "owsd-mqtt" not in journal(house)
     assert "relay_WriteEnable" not in scene.owsctl(house.daemon, "journal").stdout
@@ -339,7 +339,7 @@ def test_a_retained_command_of_last_week_and_one_of_now_are_refused(scene):
     command(house, "relay", "on", "-r")
     house.daemon.config.write_text(house.text(ROOM, RELAY, **ON))
     house.face = house.start()
-    logged(house.face, "command to relay refused: it is retained")
+    logged(house.face, "command to \"relay\" refused: it is retained")
     command(house, "relay", "on", "-r")
     until(lambda: (house.last("health") or {}).get("commands_refused", 0) >= 2, 20,
           lambda: house.last("health"))
@@ -361,7 +361,7 @@ def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
     until(taken, 20, "commands are taken again", step=0.5)
     # what is wrong with another one is not hidden by them
     command(house, "nobody", "1")
-    logged(house.face, "command to nobody refused: there is no such signal")
+    logged(house.face, "command to \"nobody\" refused: there is no such signal")
     # those without a line are counted
     refused = house.arrives("health", lambda m: "nobody" in m["trouble"])["commands_refused"]
     assert house.face.stop() == 0
@@ -387,7 +387,7 @@ def test_a_message_of_any_length_costs_nothing(scene):
         publish(house, "owsd/pi7/relay/set", huge)
         house.arrives("health", lambda m: m["commands"] == 0)
         command(house, "relay", "on")
-        logged(house.face, "relay set to on" if write == "on" else "command to relay refused: Write is off")
+        logged(house.face, "relay set to on" if write == "on" else "command to \"relay\" refused: Write is off")
         assert house.face.running() and peak_kib(house.face) < usual + 20000, (usual, peak_kib(house.face))
         assert house.face.log().count("connected to") == 1, house.face.log()
 
@@ -420,12 +420,12 @@ def test_a_flood_of_others_starves_no_command(scene):
     house = ready(scene, ROOM, RELAY, item("pump", f"/{SWITCH}/PIO.1", "bool", "output"))
     house.set("relay", 0)
     with flood(house, "owsd/pi7/nosuch/set", "owsd/pi7/relay/set"):
-        logged(house.face, "command to nosuch refused: there is no such signal")
-        logged(house.face, "command to relay refused: more than 50 commands in a second")
+        logged(house.face, "command to \"nosuch\" refused: there is no such signal")
+        logged(house.face, "command to \"relay\" refused: more than 50 commands in a second")
         for n in range(1, 31):
             command(house, "pump", str(n % 2))
             house.arrives("pump", lambda m, n=n: m["v"] is bool(n % 2))
-    assert "command to pump refused" not in house.face.log()
+    assert "command to \"pump\" refused" not in house.face.log()
 
 
 def test_commands_go_on_after_a_reload_and_a_restart_of_owsd(scene):

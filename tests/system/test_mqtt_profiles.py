@@ -204,11 +204,11 @@ def test_commands_have_the_way_and_the_rights_of_all_commands(scene):
         journal = scene.owsctl(house.daemon, "journal").stdout
         assert "owsd-mqtt" in journal and "mqtt:127.0.0.1" in journal, journal
         command(house, profile, "relay", "7")
-        logged(house.face, "command to relay refused: \"7\" is no value for it: expected 0 or 1")
+        logged(house.face, "command to \"relay\" refused: \"7\" is no value for it: expected 0 or 1")
         command(house, profile, "room", "20")
-        logged(house.face, "command to room refused: it is an input")
+        logged(house.face, "command to \"room\" refused: it is an input")
         command(house, profile, "relay", profile.off, "-r")
-        logged(house.face, "command to relay refused: it is retained")
+        logged(house.face, "command to \"relay\" refused: it is retained")
         command(house, profile, "nobody", profile.on)
         logged(house.face, " refused: there is no such signal")
         assert house.listener.last(profile.topic("relay")) == profile.on
@@ -220,7 +220,7 @@ def refuses(scene, house, profile):
     until(lambda: f"{profile.set} (QoS" in house.broker.process.log(), 20, "it listens to commands")
     house.set("relay", 0)
     command(house, profile, "relay", profile.on)
-    logged(house.face, "command to relay refused: Write is off in the block Mqtt")
+    logged(house.face, "command to \"relay\" refused: Write is off in the block Mqtt")
     assert scene.get(house.daemon, "relay") == "0"
 
 

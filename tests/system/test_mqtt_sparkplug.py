@@ -195,7 +195,7 @@ def test_a_limit_alarm_is_a_metric_beside_its_signal(scene):
     host.hears("dbirth", SENSOR, after=at)
     until(lambda: now() is False, 20, lambda: host.heard)
     command(house, host, f"DCMD/pi7/{SENSOR}", ("room/Alarm", "BOOLEAN", True))
-    logged(house.face, "command to room/Alarm refused: the last birth has no such metric there")
+    logged(house.face, "command to \"room/Alarm\" refused: the last birth has no such metric there")
     house.daemon.stop()
     until(lambda: now() is None, 20, lambda: host.heard)
 
@@ -242,21 +242,21 @@ def test_commands_go_the_way_of_all_commands(scene):
     host.hears("ddata", SWITCH, lambda m: "dial" in m and m["dial"].value == 17, at)
     until(lambda: '"mqtt:127.0.0.1"' in journal(house), 20, lambda: journal(house))
     refused = (
-        (there, (relay, "DOUBLE", 1.0), "command to relay refused: its datatype is not that of the birth"),
-        (there, ("relay", "STRING", "1"), "command to relay refused: its datatype is not that of the birth"),
-        (there, ("relay", "BOOLEAN", None), "command to relay refused: it is null"),
-        (there, ("dial", "UINT8", 201), "command to dial refused: \"201\" is no value for it: expected 0 to 200"),
-        (there, (relay + 77, "BOOLEAN", True), f"command to alias {relay + 77} refused: the last birth has no such"),
-        (there, ("room", "DOUBLE", 1.0), "command to room refused: the last birth has no such metric there"),
-        ("NCMD/pi7", ("relay", "BOOLEAN", True), "command to relay refused: the last birth has no such metric there"),
+        (there, (relay, "DOUBLE", 1.0), "command to \"relay\" refused: its datatype is not that of the birth"),
+        (there, ("relay", "STRING", "1"), "command to \"relay\" refused: its datatype is not that of the birth"),
+        (there, ("relay", "BOOLEAN", None), "command to \"relay\" refused: it is null"),
+        (there, ("dial", "UINT8", 201), "command to \"dial\" refused: \"201\" is no value for it: expected 0 to 200"),
+        (there, (relay + 77, "BOOLEAN", True), f"command to \"alias {relay + 77}\" refused: the last birth has no such"),
+        (there, ("room", "DOUBLE", 1.0), "command to \"room\" refused: the last birth has no such metric there"),
+        ("NCMD/pi7", ("relay", "BOOLEAN", True), "command to \"relay\" refused: the last birth has no such metric there"),
         ("DCMD/pi7/28.FFFFFFFFFFFF", ("relay", "BOOLEAN", True), "the last birth has no such metric there"),
-        (f"DCMD/pi7/{SENSOR}", ("room", "DOUBLE", 1.0), "command to room refused: it is an input"),
+        (f"DCMD/pi7/{SENSOR}", ("room", "DOUBLE", 1.0), "command to \"room\" refused: it is an input"),
     )
     for topic, metric, words in refused:
         command(house, host, topic, metric)
         logged(house.face, words)
     command(house, host, there, ("dial", "UINT8", 3), options=("-r",))
-    logged(house.face, "command to dial refused: it is retained")
+    logged(house.face, "command to \"dial\" refused: it is retained")
     publish(house, f"spBv1.0/plant/{there}", b"\xff\xff")
     logged(house.face, "no payload of Sparkplug B")
     command(house, host, there, ("dial", "UINT8", 18))
@@ -270,14 +270,14 @@ def test_without_write_nothing_is_set(scene):
     command(house, host, "NCMD/pi7", ("relay", "BOOLEAN", True))
     logged(house.face, "Write is off")
     command(house, host, f"DCMD/pi7/{SWITCH}", ("relay", "BOOLEAN", True))
-    until(lambda: house.face.log().count("command to relay refused: Write is off") == 2, 20, lambda: house.face.log())
+    until(lambda: house.face.log().count("command to \"relay\" refused: Write is off") == 2, 20, lambda: house.face.log())
 
 
 def test_a_command_to_reboot_is_refused_with_a_reason(scene):
     house, host = start(scene, ROOM, RELAY, **ON)
     host.hears("dbirth", SENSOR)
     command(house, host, "NCMD/pi7", ("Node Control/Reboot", "BOOLEAN", True))
-    logged(house.face, "command to Node Control/Reboot refused: nothing restarts a plant over a broker: "
+    logged(house.face, "command to \"Node Control/Reboot\" refused: nothing restarts a plant over a broker: "
                        "systemctl restart owsd-mqtt on the machine itself")
     # it goes on
     command(house, host, "NCMD/pi7", ("Node Control/Rebirth", "BOOLEAN", True))
@@ -369,7 +369,7 @@ def test_a_session_waits_for_its_primary_host_and_ends_with_it(scene):
               "STATE/scada (QoS 1)" in house.broker.process.log().rpartition(" as owsd-pi7")[2], 20, lambda: house.broker.process.log())
         publish(house, "spBv1.0/STATE/scada", json.dumps({"timestamp": ms, "online": online}), "-r")
         command(house, host, "NCMD/pi7", ("none", "BOOLEAN", True))
-    refused = "command to none refused: "
+    refused = "command to \"none\" refused: "
     logged(house.face, "nothing is published until the primary host scada is online")
     said(False, 1000, 1)
     said(True, 999, 1)

@@ -127,7 +127,7 @@ def test_owsctl_asks_for_a_reload_and_knows_when_it_is_done(scene):
     assert done.returncode == 0 and done.stderr == "", done
     assert done.stdout == f"owsd {daemon.name}: reloaded\n", done
     assert scene.owsctl(daemon, "list", "cellar").returncode == 0, "it is there at once"
-    until(lambda: "reload: asked for by owsctl (process" in daemon.log(), 10, daemon.log)
+    until(lambda: 'reload: asked for by "owsctl" (process' in daemon.log(), 10, daemon.log)
     until(lambda: get(scene, daemon, "cellar") == "12", 10, "the new one is read")
     # many at once are answered by a reload each, or by one together
     askers = [scene.start([owsdtest.OWSCTL, "-n", daemon.name, "reload"]) for _ in range(4)]

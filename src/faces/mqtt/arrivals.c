@@ -154,7 +154,7 @@ static void answer_rename(struct mqtt *m, const struct ask *ask, const char *nam
 	if (why)
 		commands_refuse(&m->commands, name, why, ows_now());
 	else
-		log_notice(m->broker.face->log, "%s is called %.63s now", name, ask->value);
+		log_notice(m->broker.face->log, "\"%s\" is called \"%.63s\" now", name, ask->value);
 	stream_message(&m->stream, &json);
 	json_object(&json, NULL);
 	ask_answer_json(&json, ask, why);

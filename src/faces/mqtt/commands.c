@@ -36,12 +36,16 @@ void commands_refuse(struct commands *c, const char *name, const char *why, int6
 {
 	uint64_t print = hash_text(HASH_BEGIN, why, strlen(why));
 	struct commands_cause *cause = &c->causes[print % COMMANDS_CAUSES];
+	char claim[64];
 
+	snprintf(claim, sizeof(claim), "%s", name);
+	for (char *quote = claim; (quote = strchr(quote, '"'));)
+		*quote = '\'';
 	commands_tell(c, now_ns);
 	c->refused++;
 	snprintf(c->why, sizeof(c->why), "%s", why);
 	c->trouble_ns = now_ns;
-	snprintf(c->trouble, sizeof(c->trouble), "command to %.63s refused: %.150s", name, why);
+	snprintf(c->trouble, sizeof(c->trouble), "command to \"%s\" refused: %.150s", claim, why);
 	if (!cause->lines)
 		cause->begun_ns = now_ns;
 	if (cause->lines < COMMANDS_LINES) {

@@ -167,10 +167,10 @@ static void log_visit(const struct writer *writer, const struct peer *peer, cons
 	bool named = *order->person;
 
 	log_at(writer->log, answer->status == ANSWER_DONE ? LOG_LEVEL_NOTICE : LOG_LEVEL_WARNING,
-	       "%s: %s by user %u (process %d)%s%s: %s%s%s%s%s", writer->file, kind,
-	       (unsigned)peer->uid, (int)peer->pid, named ? " for " : "", order->person,
-	       answer_word(answer->status), answer->has_tag ? ", tag " : "", answer->tag,
-	       *answer->why ? ", " : "", answer->why);
+	       "%s: %s by user %u (process %d)%s%s%s: %s%s%s%s%s", writer->file, kind,
+	       (unsigned)peer->uid, (int)peer->pid, named ? " for \"" : "", order->person,
+	       named ? "\"" : "", answer_word(answer->status), answer->has_tag ? ", tag " : "",
+	       answer->tag, *answer->why ? ", " : "", answer->why);
 }
 
 /* A signal that ends the program waits until the change is whole. */

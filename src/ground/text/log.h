@@ -34,6 +34,12 @@ enum log_level log_level(const struct log *log);
 void log_put(struct log *log, enum log_level level, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
 
+/*
+ * What a program says of itself, then the kernel's word on it: a name in quotes, which has none, a
+ * process and a user.
+ */
+#define LOG_PROGRAM "\"%s\" (process %d, user %u)"
+
 #define log_at(log, lvl, ...) \
 	do { \
 		if ((log) && (lvl) <= log_level(log)) \

@@ -336,7 +336,7 @@ void control_take_askers(struct control *c)
 		if (control_state_of(p) != CONTROL_ASKING)
 			continue;
 		__atomic_store_n(&p->state, CONTROL_ASKED, __ATOMIC_RELEASE);
-		log_notice(c->log, "reload: asked for by %s (process %d, user %u)", p->who.name,
+		log_notice(c->log, "reload: asked for by " LOG_PROGRAM, p->who.name,
 		           (int)p->who.pid, (unsigned)p->who.uid);
 	}
 	pthread_mutex_unlock(&c->lock);
@@ -372,8 +372,8 @@ static void prepare_grant(struct control *c, struct control_seat *p)
 	                     held_of(c, p->peer.uid, &bytes) < CONTROL_HELD && !held_full(c)))
 		err = grant_make(&p->next, c->layout, &c->rights, p);
 	if (err)
-		log_warning(c->log, "no memory for controller %s (process %d) after the reload: %s",
-		            p->who.name, (int)p->who.pid, strerror(-err));
+		log_warning(c->log, "no memory for controller " LOG_PROGRAM " after the reload: %s",
+		            p->who.name, (int)p->who.pid, (unsigned)p->who.uid, strerror(-err));
 }
 
 void control_prepare(struct control *c, const struct config *config,

@@ -86,7 +86,7 @@ static void join_controller(struct control *c, struct control_seat *p,
 		return;
 	}
 	control_tally(c, CONTROL_joined);
-	log_info(c->log, "controller %s (process %d, user %u) may command %u signals", p->who.name,
+	log_info(c->log, "controller " LOG_PROGRAM " may command %u signals", p->who.name,
 	         (int)p->who.pid, (unsigned)p->who.uid, p->now.allowed);
 	control_enter(p, CONTROL_JOINING);
 	seat_changed(c);

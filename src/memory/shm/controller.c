@@ -203,7 +203,10 @@ int controller_text(const struct controller_memory *memory, uint32_t record, cha
 	return check == ows_check_bytes(text, len) ? (int)len : -EBADMSG;
 }
 
-/* Copy a text that ends before size, with '?' for control characters, and fill up with NUL. */
+/*
+ * Copy a text that ends before size, with '?' for control characters, and fill up with NUL. A
+ * quote would end those in which a line of the log has the text.
+ */
 static void clean_text(char *to, const char *from, size_t size)
 {
 	size_t n = 0;
@@ -211,7 +214,7 @@ static void clean_text(char *to, const char *from, size_t size)
 	while (n < size - 1 && from[n] != '\0') {
 		unsigned char c = (unsigned char)from[n];
 
-		to[n++] = c < 0x20 || c == 0x7f ? '?' : (char)c;
+		to[n++] = c < 0x20 || c == 0x7f ? '?' : c == '"' ? '\'' : (char)c;
 	}
 	memset(to + n, 0, size - n);
 }

@@ -182,13 +182,13 @@ static void test_a_text_with_a_wrong_length_or_check_is_refused(void)
 	TEST_ASSERT_EQUAL_INT(-EBADMSG, controller_text(&controller.memory, STRING, text));
 }
 
-static void test_names_are_cut_and_without_control_characters(void)
+static void test_names_are_cut_and_without_control_characters_and_quotes(void)
 {
 	char name[OWS_NAME];
 
-	giving_name_person(&controller, 2, "anna\n\033[2J");
+	giving_name_person(&controller, 2, "anna\"\n\033[2J");
 	controller_person(&controller.memory, 3, name);
-	TEST_ASSERT_EQUAL_STRING("anna??[2J", name);
+	TEST_ASSERT_EQUAL_STRING("anna'??[2J", name);
 	memset(controller.memory.base + layout.header.person_off, 'x', OWS_NAME);
 	controller_person(&controller.memory, 1, name);
 	TEST_ASSERT_EQUAL_UINT(OWS_NAME - 1, strlen(name));
@@ -307,7 +307,7 @@ int main(void)
 	RUN_TEST(test_marks_are_found_in_order_and_once);
 	RUN_TEST(test_marks_of_slots_that_do_not_exist_are_nothing);
 	RUN_TEST(test_a_text_with_a_wrong_length_or_check_is_refused);
-	RUN_TEST(test_names_are_cut_and_without_control_characters);
+	RUN_TEST(test_names_are_cut_and_without_control_characters_and_quotes);
 	RUN_TEST(test_a_request_to_shelve_is_there_until_it_is_done);
 	RUN_TEST(test_the_next_memory_has_what_this_one_had_and_nothing_of_it_is_new);
 	RUN_TEST(test_rubbish_in_the_memory_harms_nothing);

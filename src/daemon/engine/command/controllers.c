@@ -45,8 +45,8 @@ static void lose_outputs(struct engine *e, uint32_t controller, int64_t awake_ns
 	if (g->rows == rows)
 		return;
 	e->counters.lost_controllers += g->is == CONTROLLER_AWAITED;
-	log_warning(e->log, "%s (process %d) %s: %u output%s to SafeValue", g->as.who.name,
-	            (int)g->as.who.pid,
+	log_warning(e->log, LOG_PROGRAM " %s: %u output%s to SafeValue", g->as.who.name,
+	            (int)g->as.who.pid, (unsigned)g->as.who.uid,
 	            g->is == CONTROLLER_AWAITED     ? "has not come back since owsd started"
 	            : g->is == CONTROLLER_CONNECTED ? "stopped beating"
 	                                            : "ended without a goodbye",
@@ -151,9 +151,9 @@ static void come_back(struct engine *e, uint32_t seat, uint32_t former)
 	engine_remember_controller(e, seat);
 	engine_hand_over(e, former, seat);
 	engine_come_back(e, seat);
-	log_info(e->log, "%s (process %d) came back: its command%s of %u output%s in force",
-	         g->as.who.name, (int)g->as.who.pid, g->rows == 1 ? "" : "s", g->rows,
-	         g->rows == 1 ? " is" : "s are");
+	log_info(e->log, LOG_PROGRAM " came back: its command%s of %u output%s in force",
+	         g->as.who.name, (int)g->as.who.pid, (unsigned)g->as.who.uid,
+	         g->rows == 1 ? "" : "s", g->rows, g->rows == 1 ? " is" : "s are");
 	if (former >= OWS_CONTROLLERS)
 		controllers_forget(e, former);
 }

@@ -32,14 +32,14 @@ static void refuse_command(struct engine *e, struct known_controller *g, const s
 	e->counters.refused_commands++;
 	g->refused++;
 	if (n)
-		log_warning(e->log, "%s: a command of %s (process %d) was refused: %s%s",
-		            s->item->name, g->as.who.name, (int)g->as.who.pid,
-		            err == -EROFS    ? "the signal is an input, and Writable is off"
-		            : err == -EACCES ? "ControlAllow does not let it command the signal"
-		            : err == -ERANGE
-		                    ? "the type cannot hold it, or it is beyond Min and Max"
-		                    : "the text is damaged",
-		            log_others(n, others));
+		log_warning(
+			e->log, "%s: a command of " LOG_PROGRAM " was refused: %s%s", s->item->name,
+			g->as.who.name, (int)g->as.who.pid, (unsigned)g->as.who.uid,
+			err == -EROFS    ? "the signal is an input, and Writable is off"
+			: err == -EACCES ? "ControlAllow does not let it command the signal"
+			: err == -ERANGE ? "the type cannot hold it, or it is beyond Min and Max"
+					 : "the text is damaged",
+			log_others(n, others));
 }
 
 static bool may_command(const struct known_controller *g, uint32_t record)

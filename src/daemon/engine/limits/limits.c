@@ -268,9 +268,8 @@ int engine_shelve(struct engine *e, struct signal *s, uint32_t seconds, const st
 	if (err)
 		return err;
 	journal_deed(e, s, s->limit.alarm.kind, OWS_ALARM_SHELVED, who, entry.why);
-	log_notice(e->log, "%s: alarm: shelved for %u s by %s: %s", s->item->name, seconds,
-	           *who->name ? who->name : "a program",
-	           *entry.why ? entry.why : "no reason given");
+	log_notice(e->log, "%s: alarm: shelved for %u s by " LOG_PROGRAM ": \"%s\"", s->item->name,
+	           seconds, who->name, (int)who->pid, (unsigned)who->uid, entry.why);
 	s->limit.logged = false;
 	limit_shelve(&s->limit.alarm);
 	return 0;
