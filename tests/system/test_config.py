@@ -167,6 +167,7 @@ def test_a_link_to_nowhere_is_named(scene):
     done = scene.owsctl(None, "config", path, "add", "x", "/28.000000000001/temperature")
     assert done.returncode == 1, done
     assert "link.rio: error: is a symbolic link to a file that is not there" in done.stderr
+    assert "is new" not in done.stderr, done.stderr
     assert os.listdir(scene.path) == ["link.rio"]
 
 

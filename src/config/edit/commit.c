@@ -2,7 +2,6 @@
 /* A document that was edited is checked, and takes the place of its file. */
 #include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "src/config/check/check.h"
@@ -11,6 +10,7 @@
 #include "src/config/edit/replace.h"
 #include "src/config/read/load.h"
 #include "src/config/read/report.h"
+#include "src/config/read/rio_file.h"
 
 int edit_lock(const char *file, struct config_report *report)
 {
@@ -28,13 +28,6 @@ int edit_lock(const char *file, struct config_report *report)
 	return fd;
 }
 
-static bool is_dangling(const char *file)
-{
-	struct stat st;
-
-	return !lstat(file, &st) && S_ISLNK(st.st_mode) && stat(file, &st) && errno == ENOENT;
-}
-
 int edit_commit(const struct rio *rio, const char *file, const char *edited,
                 struct config_report *report)
 {
@@ -50,9 +43,8 @@ int edit_commit(const struct rio *rio, const char *file, const char *edited,
 	if (err)
 		return err;
 	err = replace_file(file, rio->text, rio->len);
-	if (err == -ENOENT && is_dangling(file))
-		report_error(report, (struct rio_position){file, 0, 0},
-		             "is a symbolic link to a file that is not there");
+	if (err == -ENOENT && rio_dangles(file))
+		report_error(report, (struct rio_position){file, 0, 0}, RIO_DANGLES);
 	else if (err)
 		report_error(report, (struct rio_position){file, 0, 0}, "cannot be %s: %s",
 		             access(file, F_OK) ? "made" : "replaced", strerror(-err));

@@ -55,6 +55,13 @@ static int cannot_read(struct config_report *report, struct rio_position positio
 	return err;
 }
 
+bool rio_dangles(const char *file)
+{
+	struct stat st;
+
+	return !lstat(file, &st) && S_ISLNK(st.st_mode) && stat(file, &st) && errno == ENOENT;
+}
+
 /* Returns a descriptor, or a negative errno after reporting why. */
 static int open_file(const char *file, struct config_report *report)
 {
@@ -68,8 +75,13 @@ static int open_file(const char *file, struct config_report *report)
 		return -EINVAL;
 	}
 	/* check before opening, which has an effect on some devices */
-	if (stat(file, &st) < 0)
-		return cannot_read(report, position, -errno);
+	if (stat(file, &st) < 0) {
+		err = -errno;
+		if (err != -ENOENT || !rio_dangles(file))
+			return cannot_read(report, position, err);
+		report_error(report, position, RIO_DANGLES);
+		return err;
+	}
 	err = rio_file_check(&st, position, report);
 	if (err)
 		return err;

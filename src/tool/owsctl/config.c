@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include "src/config/check/know.h"
 #include "src/config/check/property.h"
@@ -226,11 +226,13 @@ static int open_document(const char *file, bool make, struct config_report *repo
                          struct rio **rio)
 {
 	char *text = NULL;
+	struct stat st;
 	size_t len;
 	int err;
 
 	*rio = NULL;
-	if (make && access(file, F_OK) && errno == ENOENT) {
+	/* a link that leads nowhere is not new */
+	if (make && lstat(file, &st) && errno == ENOENT) {
 		ctl_tell("%s is new, with the target localhost:4304: config FILE set OwsDrv "
 		         "TargetName=... changes it",
 		         file);
