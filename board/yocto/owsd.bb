@@ -46,7 +46,7 @@ do_install() {
 
 USERADD_PACKAGES = "${PN} @packages@"
 GROUPADD_PARAM:${PN} = "-r owsd; -r owsd-control; -r owsd-config; -r i2c; -r gpio; -f -r dialout"
-USERADD_PARAM:${PN} = "-r -M -s /sbin/nologin -g owsd -G owsd-control,i2c,gpio,dialout owsd"
+USERADD_PARAM:${PN} = "-r -M -s /sbin/nologin -g owsd -G owsd-control,owsd-config,i2c,gpio,dialout owsd"
 @each-package@
 GROUPADD_PARAM:@package@ = "@groupadd@"
 USERADD_PARAM:@package@ = "@useradd@"

@@ -57,5 +57,14 @@ def test_the_table_makes_users_units_and_what_the_packages_hold(scene):
         assert signals == "-" or f"rm -rf /var/lib/{program}\n" in (of / f"{package}.postrm").read_text()
 
 
+def test_each_way_to_make_owsds_user_puts_it_into_the_groups_that_its_files_are_for(_scene):
+    groups = set(re.findall(r'mode_for\("([\w-]+)"', (SOURCE / "src/daemon/serve/listener.c").read_text()))
+    assert groups == {"owsd-control", "owsd-config"}, groups
+    for file, form in (("systemd/sysusers.conf", r"^m owsd +{}$"), ("alpine/owsd.pre-install", r'^user owsd ".*\b{}\b'),
+                       ("buildroot/package/owsd/owsd.mk", r"owsd -1 .*\b{}\b"), ("yocto/owsd.bb", r" -G \S*\b{}\b")):
+        for group in groups:
+            assert re.search(form.format(group), (SOURCE / "board" / file).read_text(), re.M), (file, group)
+
+
 if __name__ == "__main__":
     owsdtest.main()

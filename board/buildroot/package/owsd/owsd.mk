@@ -66,7 +66,7 @@ define OWSD_INSTALL_INIT_SYSTEMD
 endef
 
 define OWSD_USERS
-	owsd -1 owsd -1 * - - owsd-control,i2c,gpio,dialout 1-Wire daemon
+	owsd -1 owsd -1 * - - owsd-control,owsd-config,i2c,gpio,dialout 1-Wire daemon
 @each@
 	@program@ -1 @program@ -1 * - - @list@ @user@
 @end@
