@@ -19,6 +19,9 @@
 #define GROW_MAX_NS (10 * NS_PER_S)
 #define TROUBLE_NS (60 * NS_PER_S)
 
+static const char gone[] =
+	"the adapter is gone: look at its plug and its supply; owsd takes it again when it is back";
+
 /* From the first on; those before are known. */
 static void take_channels(struct native *native, unsigned first)
 {
@@ -118,9 +121,7 @@ static int open_master(struct native *native, char why[BUS_EVENT_TEXT])
 	int err = native->master->ops->open(native->master, why, BUS_EVENT_TEXT);
 
 	if (err == -ENODEV && native->up_ns)
-		snprintf(why, BUS_EVENT_TEXT,
-		         "the adapter is gone: look at its plug and its supply; owsd takes it "
-		         "again when it is back");
+		snprintf(why, BUS_EVENT_TEXT, "%s", gone);
 	return err;
 }
 
@@ -259,7 +260,7 @@ bool master_recover(struct native *native, unsigned n, int err)
 	native_count(native, COUNT_LINK_ERRORS);
 	channel->errors++;
 	if (err == -ENODEV || err == -ECANCELED) {
-		master_down(native, err, err == -ENODEV ? "the adapter is gone" : "shutting down");
+		master_down(native, err, err == -ENODEV ? gone : "shutting down");
 		return false;
 	}
 	if (err == -ENXIO && channel->rung < OF_LINK + LINK_CHIP_RESET)

@@ -170,7 +170,7 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 	}
 	if (count)
 		log_notice(e->log,
-		           "%s: answers from a cache of %lld s, and %u of its signals (%s%s) "
+		           "%s: may answer from a cache of %lld s, and %u of its signals (%s%s) "
 		           "are read more often: Uncached on reads the device each time, "
 		           "timeout_volatile in owfs.conf shortens the cache",
 		           lane->port->target, (long long)(cache_ns / NS_PER_S), count,
@@ -199,6 +199,20 @@ static void trouble_event(struct lane *lane, const char *text)
 	keep_note(lane, note, text);
 }
 
+/*
+ * What the signals of a lost target have as their error. Most are of an adapter that does not open,
+ * and would mean something else of a device.
+ */
+static int error_of_loss(int err)
+{
+	static const int known[] = {-ECONNREFUSED, -ECONNRESET, -EPIPE, -ETIMEDOUT, -EPROTO};
+
+	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
+		if (err == known[i])
+			return err;
+	return -ENOTCONN;
+}
+
 static void down_event(struct lane *lane, int err, const char *text)
 {
 	struct engine *e = lane->engine;
@@ -211,7 +225,7 @@ static void down_event(struct lane *lane, int err, const char *text)
 	lane->state.up = false;
 	lane->counters.target_failures++;
 	keep_note(lane, &lane->state.why_down, *text ? text : strerror(-err));
-	lane_fail(lane, err);
+	lane_fail(lane, error_of_loss(err));
 }
 
 static void device_event(struct lane *lane, const struct bus_event *event)

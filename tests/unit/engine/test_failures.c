@@ -211,6 +211,21 @@ static void test_a_lost_target_turns_all_its_signals_bad_at_once(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, scene_sample(&s, 2).quality);
 }
 
+/* That of an adapter means something else of a device: "no such device there". */
+static void test_why_an_adapter_does_not_open_is_no_error_of_its_signals(void)
+{
+	static const int errors[] = {-ENODEV, -ENXIO, -EACCES, -EBUSY, -EINVAL};
+
+	two_thermometers();
+	for (size_t i = 0; i < sizeof(errors) / sizeof(errors[0]); i++) {
+		scene_down(&s, errors[i]);
+		TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
+		TEST_ASSERT_EQUAL_INT32(-ENOTCONN, scene_sample(&s, 1).err);
+		scene_up(&s);
+		scene_run(&s, 50 * SCENE_MS);
+	}
+}
+
 static void test_reconnects_count_returns_and_not_the_first_connection(void)
 {
 	two_thermometers();
@@ -607,6 +622,7 @@ int main(void)
 	RUN_TEST(test_a_directory_that_shows_the_device_ends_the_back_off);
 	RUN_TEST(test_outputs_of_a_device_that_comes_back_are_written_again);
 	RUN_TEST(test_a_lost_target_turns_all_its_signals_bad_at_once);
+	RUN_TEST(test_why_an_adapter_does_not_open_is_no_error_of_its_signals);
 	RUN_TEST(test_reconnects_count_returns_and_not_the_first_connection);
 	RUN_TEST(test_a_target_that_is_down_at_the_start_makes_bad_and_then_good);
 	RUN_TEST(test_a_written_output_is_not_written_again_when_the_target_returns);
