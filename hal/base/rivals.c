@@ -72,6 +72,44 @@ static bool takes_lock(const char *name)
 	return !strncmp(name, "owsd", 4) || !strncmp(name, "owsctl", 6);
 }
 
+static bool is_of_owfs(const char *name)
+{
+	static const char *const names[] = {"owserver", "owfs", "owhttpd", "owftpd"};
+	size_t i = 0;
+
+	while (i < sizeof(names) / sizeof(names[0]) && strcmp(name, names[i]) != 0)
+		i++;
+	return i < sizeof(names) / sizeof(names[0]);
+}
+
+int rivals_hidden(const char *proc, char *text, size_t size)
+{
+	DIR *dir = opendir(proc);
+	int found = 0;
+
+	text[0] = '\0';
+	for (struct dirent *entry; dir && !found && (entry = readdir(dir));) {
+		int pid = (int)strtol(entry->d_name, NULL, 10);
+		char name[17], path[320];
+		DIR *open;
+
+		read_comm(proc, pid, name, sizeof(name));
+		if (pid <= 0 || !is_of_owfs(name))
+			continue;
+		snprintf(path, sizeof(path), "%s/%d/fd", proc, pid);
+		open = opendir(path);
+		if (open)
+			closedir(open);
+		else
+			found = pid;
+	}
+	if (dir)
+		closedir(dir);
+	if (found)
+		rivals_name(proc, found, text, size);
+	return found;
+}
+
 #define ONE (sizeof(" and , process 2147483647") + 16) /* what one of them takes at most */
 #define MORE (sizeof(" and 4294967295 more"))
 

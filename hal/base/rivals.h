@@ -19,6 +19,11 @@ void rivals_name(const char *proc, int pid, char *text, size_t size);
  * and stats files of proc alone.
  */
 unsigned rivals_find(const char *proc, const char *device, char *text, size_t size);
+/*
+ * Write "owserver (process 109)" of a program of OWFS whose open files this process may not see.
+ * Returns its process id; 0: there is none.
+ */
+int rivals_hidden(const char *proc, char *text, size_t size);
 
 /* A device file as messages about it have it. */
 struct rivals_device {

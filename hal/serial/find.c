@@ -65,6 +65,13 @@ static unsigned look(const char *names, unsigned folder, const char *device, cha
 	return count;
 }
 
+bool tty_only(const char *names, char *path, size_t size)
+{
+	char name[PATH_MAX];
+
+	return look(names, BY_ID, "", name) == 1 && (size_t)snprintf(path, size, "%s", name) < size;
+}
+
 /* Of adapters without a serial number that are the same only one has the name of what it is. */
 static bool are_some_equal(const char *names)
 {
@@ -129,6 +136,7 @@ static int open_place(void *ctx, const struct bus_env *env, struct serial_port *
 	const struct rivals_device device = {
 		path, path, "is the adapter plugged in? ls " SERIAL_BY_ID, "dialout"};
 	unsigned count = find(place, path);
+	char who[RIVALS_TEXT];
 	int holder;
 
 	if (count == 0) {
@@ -152,6 +160,9 @@ static int open_place(void *ctx, const struct bus_env *env, struct serial_port *
 
 	if (err == -ENOTTY)
 		snprintf(why, why_size, "%s is no serial port", path);
+	else if (err == -EBUSY && !rivals_find(RIVALS_PROC, path, who, sizeof(who)))
+		snprintf(why, why_size,
+		         "%s is in use by another program: sudo owsctl doctor names it", path);
 	else if (err)
 		err = rivals_refused(err, &device, holder, why, why_size);
 	if (err)

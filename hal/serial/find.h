@@ -7,6 +7,8 @@
 #define SERIAL_NAMES "/dev/serial"
 #define SERIAL_BY_ID SERIAL_NAMES "/by-id"
 
+/* The only serial port by a name that stays. False: there is none, or there are several. */
+bool tty_only(const char *names, char *path, size_t size);
 /*
  * The source of a target's port: a device file, or "" for the only one that names/by-id has. A
  * device is found again by what it is: the name below names that it had when it was opened first,

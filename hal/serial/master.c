@@ -50,8 +50,10 @@ int serial_open(struct link_master *base, char *why, size_t why_size)
 	adapter->open = true;
 	adapter->lost = false;
 	err = master->kind->begin(master, why, why_size);
-	if (err)
+	if (err) {
+		adapter_accuse(adapter, why, why_size);
 		serial_close(base);
+	}
 	return err;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* An adapter with one wire: its transactions in pieces, its errors, its rivals. */
 #include <stdio.h>
+#include <string.h>
 
 #include "hal/base/time.h"
 #include "hal/wire/adapter.h"
@@ -127,16 +128,38 @@ void adapter_link_cost(const struct link *link, struct link_cost *cost)
 }
 
 /* A look goes through the descriptors of all processes: some thousand calls. */
+static void look(struct adapter *adapter, bool failed)
+{
+	int64_t now_ns = bus_now(adapter->master.env);
+
+	if (!adapter->proc || (failed && now_ns < adapter->look_ns))
+		return;
+	adapter->look_ns = now_ns + LOOK_NS;
+	(void)rivals_find(adapter->proc, adapter->device, adapter->rivals, sizeof(adapter->rivals));
+}
+
+void adapter_accuse(struct adapter *adapter, char *why, size_t size)
+{
+	char who[RIVALS_TEXT] = "", text[RIVALS_TEXT + 40] = "";
+	size_t len;
+
+	look(adapter, true);
+	if (*adapter->rivals)
+		snprintf(text, sizeof(text), "also open in %s: ", adapter->rivals);
+	else if (adapter->proc && rivals_hidden(adapter->proc, who, sizeof(who)))
+		snprintf(text, sizeof(text), "%s runs, and may have it open: ", who);
+	len = strlen(text);
+	if (!len || len + strlen(why) >= size)
+		return;
+	memmove(why + len, why, strlen(why) + 1);
+	memcpy(why, text, len);
+}
+
 void adapter_trouble(struct link_master *base, bool failed, char *text, size_t size)
 {
 	struct adapter *adapter = (struct adapter *)base;
-	int64_t now_ns = bus_now(base->env);
 
-	if (adapter->proc && (!failed || now_ns >= adapter->look_ns)) {
-		adapter->look_ns = now_ns + LOOK_NS;
-		(void)rivals_find(adapter->proc, adapter->device, adapter->rivals,
-		                  sizeof(adapter->rivals));
-	}
+	look(adapter, failed);
 	text[0] = '\0';
 	if (*adapter->rivals)
 		snprintf(text, size,

@@ -61,6 +61,8 @@ static inline struct adapter *adapter_of(struct link *link)
 
 void adapter_init(struct adapter *adapter, const struct adapter_kind *kind,
                   const struct link_master_ops *ops, const struct bus_env *env);
+/* It does not open: put before the reason which other program has it, if there is room. */
+void adapter_accuse(struct adapter *adapter, char *why, size_t size);
 /* Wait for a time. 0 or -ECANCELED. */
 int adapter_wait(struct adapter *adapter, int64_t ns);
 

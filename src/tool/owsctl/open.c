@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "hal/bus/backends.h"
+#include "hal/serial/find.h"
 #include "src/config/read/config.h"
 #include "src/config/read/targets.h"
 #include "src/faces/show/when.h"
@@ -138,6 +139,7 @@ static int open_auto(struct target *target, char *why, size_t why_size)
 {
 	size_t used = (size_t)snprintf(why, why_size, "auto finds nothing");
 	const char *way, *between = ": ";
+	char port[200];
 
 	for (unsigned row = 0; (way = config_auto_way(&row)); between = "; ") {
 		char reason[200] = "";
@@ -148,6 +150,9 @@ static int open_auto(struct target *target, char *why, size_t why_size)
 		n = snprintf(why + used, why_size - used, "%s%s", between, reason);
 		used = n < 0 || (size_t)n >= why_size - used ? why_size - 1 : used + (size_t)n;
 	}
+	if (tty_only(SERIAL_NAMES, port, sizeof(port)))
+		snprintf(why + used, why_size - used,
+		         "; auto opens no serial port: is an adapter at -t serial:%s ?", port);
 	return CTL_FAILED;
 }
 
@@ -171,7 +176,7 @@ int open_target(const struct ctl *ctl, int64_t timeout_ns, struct target *target
                 struct served *served)
 {
 	const char *name = ctl->target;
-	char why[700] = "";
+	char why[900] = "";
 	int status;
 
 	*target = (struct target){.timeout_ns = timeout_ns,

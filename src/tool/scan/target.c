@@ -67,10 +67,13 @@ static void take_event(void *ctx, const struct bus_event *event)
 		if (target->note && target->bus->ops->testing)
 			target->note(event->text);
 		break;
+	case BUS_TROUBLE:
+		if (target->note && *event->text)
+			target->note(event->text);
+		break;
 	case BUS_FOUND:
 	case BUS_LOST:
 	case BUS_POR:
-	case BUS_TROUBLE:
 	case BUS_RELEASED:
 	case BUS_BACK:
 		break;

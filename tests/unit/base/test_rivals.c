@@ -51,6 +51,17 @@ static void run(int pid, const char *comm, const char *file)
 	fill(path, comm);
 }
 
+/* One of another user, of which only the name is to be seen. */
+static void hide(int pid, const char *comm)
+{
+	char path[128];
+
+	snprintf(path, sizeof(path), "%s/%d", proc, pid);
+	TEST_ASSERT_EQUAL_INT(0, mkdir(path, 0755));
+	snprintf(path, sizeof(path), "%d/comm", pid);
+	fill(path, comm);
+}
+
 void setUp(void)
 {
 	ds_begin();
@@ -92,6 +103,21 @@ static void test_a_program_that_has_the_adapter_open_is_named(void)
 	end(109);
 	TEST_ASSERT_EQUAL_UINT(0, find());
 	TEST_ASSERT_EQUAL_STRING("", said);
+}
+
+static void test_a_program_of_owfs_whose_files_are_hidden_is_a_suspect(void)
+{
+	run(80, "bash", DEVICE);
+	run(109, "owserver", "/dev/zero");
+	TEST_ASSERT_EQUAL_INT(0, rivals_hidden(proc, said, RIVALS_TEXT));
+	TEST_ASSERT_EQUAL_STRING("", said);
+	end(80);
+	end(109);
+	hide(80, "bash");
+	TEST_ASSERT_EQUAL_INT(0, rivals_hidden(proc, said, RIVALS_TEXT));
+	hide(109, "owserver");
+	TEST_ASSERT_EQUAL_INT(109, rivals_hidden(proc, said, RIVALS_TEXT));
+	TEST_ASSERT_EQUAL_STRING("owserver (process 109)", said);
 }
 
 static void test_several_programs_are_named_together(void)
@@ -450,6 +476,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_program_that_has_the_adapter_open_is_named);
+	RUN_TEST(test_a_program_of_owfs_whose_files_are_hidden_is_a_suspect);
 	RUN_TEST(test_several_programs_are_named_together);
 	RUN_TEST(test_of_many_programs_two_are_named_and_the_others_counted);
 	RUN_TEST(test_programs_that_take_the_lock_and_this_one_are_no_rivals);

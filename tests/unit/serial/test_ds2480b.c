@@ -512,6 +512,15 @@ static void test_another_program_on_the_port_is_named_without_an_error_too(void)
 	TEST_ASSERT_EQUAL_INT(0, symlink("/dev/null", path));
 	serial.master->ops->trouble(serial.master, false, text, sizeof(text));
 	TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "/dev/null is also open in digitemp"), text);
+	serial.master->ops->close(serial.master);
+	serial.sim.silent = true;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, serial_try());
+	TEST_ASSERT_EQUAL_PTR_MESSAGE(
+		serial.why, strstr(serial.why, "also open in digitemp, process 7: nothing answers"),
+		serial.why);
+	serial.sim.silent = false;
+	TEST_ASSERT_EQUAL_INT(0, serial_try());
+	serial.master->ops->trouble(serial.master, false, text, sizeof(text));
 	TEST_ASSERT_EQUAL_INT(0, unlink(path));
 	/* not each error is worth a look at all processes */
 	serial.host.now += 4 * HOST_S;
