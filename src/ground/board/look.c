@@ -6,6 +6,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <glob.h>
 #include <grp.h>
 #include <pwd.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@
 #include "hal/base/rivals.h"
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/look.h"
+#include "hal/serial/find.h"
 #include "src/ground/board/data.h"
 #include "src/ground/board/files.h"
 #include "src/ground/board/look.h"
@@ -297,6 +299,24 @@ static void report_masters(const struct scene *scene)
 		advise_master(scene);
 }
 
+/* The serial ports that stay what they are, and who has one. */
+static void report_ports(const struct scene *scene)
+{
+	char pattern[BOARD_PATH], proc[BOARD_PATH], who[RIVALS_TEXT];
+	glob_t found;
+
+	board_path(proc, scene->root, RIVALS_PROC);
+	board_path(pattern, scene->root, SERIAL_BY_ID "/*");
+	if (glob(pattern, 0, NULL, &found) == 0)
+		for (size_t i = 0; i < found.gl_pathc; i++) {
+			rivals_find(proc, found.gl_pathv[i], who, sizeof(who));
+			report_add(scene->report, BOARD_FACT, "serial port: %s%s%s",
+			           found.gl_pathv[i] + strlen(scene->root),
+			           *who ? ", open in " : "", who);
+		}
+	globfree(&found);
+}
+
 /* Find the base board and the HAT; the data of a named board decide which of both it is. */
 static int look_find(struct scene *scene, const struct board_data *data, unsigned count,
                      const char *id, char *why, size_t why_size)
@@ -357,6 +377,7 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 			look_at_header(&scene, (unsigned)base->i2c);
 		else
 			look_at_adapters(&scene);
+		report_ports(&scene);
 		report_masters(&scene);
 		report_notes(&scene, scene.board);
 		report_notes(&scene, scene.hat);

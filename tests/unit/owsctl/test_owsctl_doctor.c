@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * owsctl doctor on recorded machines, each a file of tests/unit/data/machines: "first", what its
- * first line has to be, with ROOT for the folder; then files, "@ PATH" and their text. And what it
- * makes of signals; and the table of faces.
+ * first line has to be, with ROOT for the folder; then files, "@ PATH" and their text, and links,
+ * "@ PATH -> TARGET". And what it makes of signals; and the table of faces.
  */
 #include <errno.h>
 #include <glob.h>
@@ -18,6 +18,7 @@
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
 #include "src/ground/board/report.h"
+#include "src/memory/shm/entries.h"
 #include "src/tool/owsctl/machine/command.h"
 #include "src/tool/owsctl/machine/doctor.h"
 #include "src/tool/owsctl/machine/faces.h"
@@ -64,6 +65,19 @@ static FILE *make_file(const char *name)
 	return file;
 }
 
+/* "PATH -> TARGET" */
+static FILE *make_link(char *name)
+{
+	char *target = strstr(name, " -> "), path[560];
+
+	*target = '\0';
+	fclose(make_file(name));
+	snprintf(path, sizeof(path), "%s/%s", root, name);
+	TEST_ASSERT_EQUAL(0, unlink(path));
+	TEST_ASSERT_EQUAL(0, symlink(target + strlen(" -> "), path));
+	return NULL;
+}
+
 static void write_file(const char *name, const char *text)
 {
 	FILE *file = make_file(name);
@@ -100,7 +114,7 @@ static void unpack(const char *machine, char *first, size_t size)
 		if (names && out_file)
 			fclose(out_file);
 		if (names)
-			out_file = make_file(line + 2);
+			out_file = strstr(line, " -> ") ? make_link(line + 2) : make_file(line + 2);
 		else if (out_file)
 			fputs(line, out_file);
 		else
@@ -304,6 +318,85 @@ static void test_signals_with_the_same_fault_are_one_finding_and_a_short_is_the_
 	instance_end(&in);
 }
 
+/* The instance has the targets localhost:4304 and w1. */
+static void doctor_of(struct instance *in)
+{
+	char words[80];
+
+	snprintf(words, sizeof(words), "doctor --root %s", root);
+	caught_begin(in->name);
+	run(verb_doctor, words);
+}
+
+static void test_an_owserver_that_is_stopped_is_started_and_one_that_listens_is_not(void)
+{
+	static const struct instance_signal signals[] = {
+		{"attic", "/28.1/temperature", OWS_DOUBLE, false, 0}};
+	static const char listens[] =
+		"  sl  local_address\n   0: 0100007F:10D0 00000000:0000 0A 0\n";
+	struct instance in;
+
+	instance_start(&in, "doctor", signals, 1);
+	image_note(&in.image, 0, ows_now(), "127.0.0.1:4304: Connection refused");
+	doctor_of(&in);
+	holds(out, "owsd says: 127.0.0.1:4304: Connection refused\n   target localhost:4304 is");
+	write_file("lib/systemd/system/owserver.service", "");
+	doctor_of(&in);
+	holds(out, ". sudo systemctl start owserver\n   target localhost:4304 is down");
+	write_file("proc/net/tcp", listens);
+	doctor_of(&in);
+	holds(out, "owsd says: 127.0.0.1:4304: Connection refused\n");
+	instance_end(&in);
+}
+
+static void test_a_device_that_is_absent_may_have_been_exchanged(void)
+{
+	static const struct instance_signal signals[] = {
+		{"attic", "/28.1/temperature", OWS_DOUBLE, false, 0}};
+	char file[120], wanted[300];
+	struct instance in;
+
+	instance_start(&in, "doctor", signals, 1);
+	put_bad(&in, 1, OWS_Q_NO_DEVICE, -ENODEV);
+	snprintf(file, sizeof(file), "etc/owsd/%s.rio", in.name);
+	write_file(
+		file,
+		"OwsDrv { Item { Name \"attic\" Path \"/28.551DDF030000/temperature\" Type double } }");
+	doctor_of(&in);
+	snprintf(wanted, sizeof(wanted),
+	         "was the chip exchanged? sudo owsctl -n %s scan --rio --merge %s/%s >/dev/null",
+	         in.name, root, file);
+	holds(out, wanted);
+	instance_end(&in);
+}
+
+/* What only owsd finds, as a target that is none. */
+static void test_a_refused_file_is_corrected_before_it_is_loaded_again(void)
+{
+	static const struct instance_signal signals[] = {
+		{"attic", "/28.1/temperature", OWS_DOUBLE, false, 0}};
+	char file[120], reason[300], wanted[400];
+	struct instance in;
+
+	instance_start(&in, "doctor", signals, 1);
+	snprintf(file, sizeof(file), "etc/owsd/%s.rio", in.name);
+	write_file(file, "OwsDrv { TargetName \"link\" Item { Name \"a\" "
+	                 "Path \"/28.551DDF030000/temperature\" Type double } }");
+	snprintf(reason, sizeof(reason), "%s/%s:1:10: error: link is a serial adapter", root, file);
+	image_refused(&in.image, ows_now() + 5 * NS_PER_S, false, reason, strlen(reason));
+	doctor_of(&in);
+	snprintf(wanted, sizeof(wanted),
+	         ". correct line 1 of %s/%s, then: sudo owsctl -n %s reload\n", root, file,
+	         in.name);
+	holds(out, wanted);
+	image_refused(&in.image, ows_now() - 60 * NS_PER_S, false, reason, strlen(reason));
+	doctor_of(&in);
+	TEST_ASSERT_NULL_MESSAGE(strstr(out, "correct line"), out);
+	snprintf(wanted, sizeof(wanted), ". sudo owsctl -n %s reload\n", in.name);
+	holds(out, wanted);
+	instance_end(&in);
+}
+
 static void test_words_that_cannot_be_are_refused(void)
 {
 	TEST_ASSERT_EQUAL(CTL_USAGE, run(verb_doctor, "doctor now"));
@@ -370,6 +463,9 @@ int main(void)
 	RUN_TEST(test_the_clock_is_set_by_who_may_and_is_left_to_who_decides);
 	RUN_TEST(test_a_command_is_run_without_a_shell);
 	RUN_TEST(test_signals_with_the_same_fault_are_one_finding_and_a_short_is_the_first);
+	RUN_TEST(test_an_owserver_that_is_stopped_is_started_and_one_that_listens_is_not);
+	RUN_TEST(test_a_device_that_is_absent_may_have_been_exchanged);
+	RUN_TEST(test_a_refused_file_is_corrected_before_it_is_loaded_again);
 	RUN_TEST(test_words_that_cannot_be_are_refused);
 	RUN_TEST(test_the_table_of_faces_says_what_starts_each);
 	RUN_TEST(test_a_face_has_what_its_block_asks_for);

@@ -27,11 +27,12 @@ static const struct {
 	const char *name;
 	void (*look)(struct doctor *d);
 } checks[] = {
-	{"disk", check_disk},         {"configuration", check_configuration},
-	{"board", check_board},       {"rights", check_rights},
-	{"services", check_services}, {"owsd", check_owsd},
-	{"targets", check_targets},   {"wire", check_wire},
-	{"faces", check_faces},       {"clock", check_clock},
+	{"disk", check_disk},       {"configuration", check_configuration},
+	{"board", check_board},     {"rights", check_rights},
+	{"signals", check_signals}, {"services", check_services},
+	{"owsd", check_owsd},       {"targets", check_targets},
+	{"wire", check_wire},       {"faces", check_faces},
+	{"clock", check_clock},
 };
 
 /*
@@ -162,15 +163,19 @@ static void print(const struct doctor *d, bool as_json)
 }
 
 /* Run each remedy that is safe, as the report has it, but for sudo: this is root. */
-static void fix(const struct doctor *d)
+static bool fix(const struct doctor *d)
 {
+	bool ran = false;
+
 	for (unsigned i = 0; i < d->found.count; i++) {
 		const char *remedy = d->found.line[i].remedy;
 
-		if (doctor_is_safe(remedy))
-			command_line(remedy + strlen("sudo "),
-			             remedy_length(remedy) - strlen("sudo "));
+		if (!doctor_is_safe(remedy))
+			continue;
+		ran = true;
+		command_line(remedy + strlen("sudo "), remedy_length(remedy) - strlen("sudo "));
 	}
+	return ran;
 }
 
 /* A recorded machine has its files of run/owsd there. */
@@ -192,7 +197,7 @@ static const char *take_root(const char *given)
 int verb_doctor(struct ctl *ctl, int argc, char **argv)
 {
 	static struct doctor d;
-	bool fixes = false;
+	bool fixes = false, ran = false;
 	int c;
 
 	d.root = "";
@@ -212,9 +217,12 @@ int verb_doctor(struct ctl *ctl, int argc, char **argv)
 	d.instance = ctl->instance;
 	doctor_look(&d);
 	if (fixes) {
-		fix(&d);
+		ran = fix(&d);
 		doctor_look(&d);
 	}
+	if (fixes && !ran && d.found.missing)
+		ctl_tell("--fix runs none of these: each may change a plant, or what somebody has "
+		         "decided");
 	print(&d, ctl->json);
 	return d.found.missing ? CTL_FAILED : CTL_DONE;
 }

@@ -22,8 +22,12 @@
 
 #define ROOM_KB 1024 /* the image of 2 000 signals, or some minutes of history */
 #define SHOWN 3      /* of the errors of a file, and of the warnings */
-#define SCAN_BEGIN "sudo systemctl stop owsd@%s; owsctl -t auto scan --rio "
+#define SCAN_BEGIN "sudo systemctl stop owsd@%s; owsctl -t %s scan --rio "
 #define SCAN_END ">new.rio && sudo cp new.rio %s; sudo systemctl start owsd@%s"
+#define PORT_TEXT 200
+#define OWSERVER "localhost:4304" /* a way of auto */
+#define OWSERVER_PORT 4304
+#define OWSERVER_OFF "sudo systemctl disable --now owserver.socket owserver.service"
 
 void check_disk(struct doctor *d)
 {
@@ -61,50 +65,28 @@ static void take_message(void *ctx, bool is_error, const char *message)
 {
 	struct told *told = ctx;
 	struct doctor *d = told->d;
+	char load[UNITS_COMMAND];
 
 	if (told->shown[is_error]++ >= SHOWN)
 		return;
 	report_add(&d->found, is_error ? BOARD_MISSING : BOARD_NOTE, "%s", message);
 	if (is_error && told->report.at_line > 0 && told->report.at_line < 1 << 30)
-		report_remedy(&d->found, "correct line %d of %s, then: sudo owsctl -n %s reload",
-		              told->report.at_line, d->file, d->instance);
+		report_remedy(&d->found, "correct line %d of %s, then: %s", told->report.at_line,
+		              d->file, units_load_command(d, load));
 	else if (is_error)
-		report_remedy(&d->found, "correct %s, then: sudo owsctl -n %s reload", d->file,
-		              d->instance);
-}
-
-/*
- * The way of docs/bring-up.md: the service has the chip, so it is stopped for the scan. What stands
- * in a file, such as blocks for programs, stays.
- */
-static void advise_scan(struct doctor *d, bool there)
-{
-	if (there)
-		report_command(&d->found, SCAN_BEGIN "--merge %s " SCAN_END, d->instance, d->file,
-		               d->file, d->instance);
-	else
-		report_command(&d->found, SCAN_BEGIN SCAN_END, d->instance, d->file, d->instance);
+		report_remedy(&d->found, "correct %s, then: %s", d->file,
+		              units_load_command(d, load));
 }
 
 void check_configuration(struct doctor *d)
 {
 	struct told told = {.d = d, .report = {.line = take_message, .ctx = &told}};
 
-	if (access(d->file, F_OK) && errno == ENOENT) {
-		/* an owsd that somebody runs by hand may need none */
-		if (!units_owsd(d))
-			return;
-		report_add(&d->found, BOARD_MISSING, "there is no %s", d->file);
-		advise_scan(d, false);
+	if (access(d->file, F_OK) && errno == ENOENT)
 		return;
-	}
 	if (config_load(d->file, &told.report, &d->config) == 0)
 		config_check(d->config, &told.report);
 	d->errors = told.report.errors;
-	if (!d->config || d->errors || d->config->item_count)
-		return;
-	report_add(&d->found, BOARD_MISSING, "%s has no signals", d->file);
-	advise_scan(d, true);
 }
 
 /* --- The board ------------------------------------------------------------------------------- */
@@ -124,11 +106,34 @@ static bool needs_master(const char *target)
 	return bus_backend(target, &where) == bus_backend("w1", &where);
 }
 
+static bool needs_port(const char *target)
+{
+	const char *where;
+	const struct bus_ops *ops = bus_backend(target, &where);
+
+	return ops == bus_backend("serial", &where) || ops == bus_backend("uart", &where);
+}
+
+/* Target n, of owsd or of the configuration: false: there are no more. */
+static bool target_at(const struct doctor *d, unsigned n, struct ows_target *target)
+{
+	*target = (struct ows_target){0};
+	if (d->alive)
+		return ows_target(d->ows, (int)n, target) == 0;
+	if (!d->config || n >= d->config->target_count)
+		return false;
+	target->name = d->config->targets[n].text;
+	return true;
+}
+
 /* Has a wire no way that is up, and one of its ways is such a target? */
 static bool lacks(const struct doctor *d, bool (*needs)(const char *target))
 {
 	struct ows_target target, other;
 
+	/* this person may not see how they do */
+	if (d->err == -EACCES)
+		return false;
 	for (int i = 0; d->alive && ows_target(d->ows, i, &target) == 0; i++) {
 		bool up = false;
 
@@ -149,29 +154,79 @@ static bool is_of_person(const struct board_line *line)
 	return strncmp(line->remedy, "sudo adduser ", 13) == 0;
 }
 
-/* The serial ports that stay what they are, and who has one. */
-static void report_serial(struct doctor *d)
+/* The one serial port that stays what it is, without the root; "": there is none, or several. */
+static void find_port(const struct doctor *d, char port[PORT_TEXT])
 {
-	char pattern[DOCTOR_ROOT + 40], proc[DOCTOR_ROOT + 8], who[RIVALS_TEXT];
-	glob_t found;
+	char names[DOCTOR_ROOT + 20], path[DOCTOR_ROOT + PORT_TEXT];
 
+	snprintf(names, sizeof(names), "%s" SERIAL_NAMES, d->root);
+	if (tty_only(names, path, sizeof(path)))
+		snprintf(port, PORT_TEXT, "%s", path + strlen(d->root));
+	else
+		*port = '\0';
+}
+
+/* Which other program has the serial port of a target, or may have it? */
+static void check_port(struct doctor *d, const char *target)
+{
+	char proc[DOCTOR_ROOT + 8], device[DOCTOR_ROOT + PORT_TEXT], who[RIVALS_TEXT];
+	char only[PORT_TEXT];
+	const char *where, *pid;
+
+	bus_backend(target, &where);
+	find_port(d, only);
+	where = *where ? where : only;
 	snprintf(proc, sizeof(proc), "%s" RIVALS_PROC, d->root);
-	snprintf(pattern, sizeof(pattern), "%s" SERIAL_BY_ID "/*", d->root);
-	if (glob(pattern, 0, NULL, &found) == 0)
-		for (size_t i = 0; i < found.gl_pathc; i++) {
-			rivals_find(proc, found.gl_pathv[i], who, sizeof(who));
-			report_add(&d->found, BOARD_FACT, "serial port: %s%s%s",
-			           found.gl_pathv[i] + strlen(d->root), *who ? ", open in " : "",
-			           who);
-		}
-	globfree(&found);
+	snprintf(device, sizeof(device), "%s%s", d->root, where);
+	if (*where && rivals_find(proc, device, who, sizeof(who))) {
+		report_add(&d->found, BOARD_MISSING,
+		           "%s is open in %s: two programs on one adapter disturb each other",
+		           where, who);
+		pid = strstr(who, ", process ");
+		if (strstr(who, "owserver, "))
+			report_remedy(&d->found, OWSERVER_OFF);
+		else
+			report_command(&d->found,
+			               "ps -fp %d    # it has to end, or to take another",
+			               pid ? atoi(pid + strlen(", process ")) : 0);
+	} else if ((d->err == -EACCES || lacks(d, needs_port)) &&
+	           rivals_hidden(proc, who, sizeof(who))) {
+		report_add(&d->found, BOARD_MISSING, "%s runs, and may have the port of target %s",
+		           who, target);
+		report_remedy(&d->found, OWSERVER_OFF "    # sudo owsctl doctor sees if it has");
+	}
+}
+
+/* Nobody but a person knows whether there is a 1-Wire adapter at it: auto opens no serial port. */
+static void advise_port(struct doctor *d, const char *port)
+{
+	char load[UNITS_COMMAND];
+
+	report_add(&d->found, BOARD_MISSING,
+	           "%s is plugged in, and auto opens no serial port: it may be a modem's", port);
+	report_remedy(&d->found, "write TargetName \"serial:%s\" into %s, then: %s", port, d->file,
+	              units_load_command(d, load));
 }
 
 void check_board(struct doctor *d)
 {
-	bool needed = lacks(d, needs_board), used = needed;
+	bool needed = lacks(d, needs_board), used;
 	struct ows_target target;
+	char port[PORT_TEXT];
 
+	for (unsigned n = 0; target_at(d, n, &target); n++)
+		if (needs_port(target.name))
+			check_port(d, target.name);
+	find_port(d, port);
+	if (needed && seen_automatic(d)) {
+		/* an owserver is a way, too: one that does not run is reported as a target */
+		needed = d->alive ? !seen_owserver_stopped(d, OWSERVER)
+		                  : !seen_listens(d->root, OWSERVER_PORT);
+		if (needed && *port && d->config)
+			advise_port(d, port);
+		needed = needed && !*port;
+	}
+	used = needed;
 	for (int i = 0; d->alive && ows_target(d->ows, i, &target) == 0; i++)
 		used |= needs_board(target.name) && target.state == 1;
 	for (unsigned i = 0; i < d->board.count; i++) {
@@ -192,7 +247,6 @@ void check_board(struct doctor *d)
 		report_remedy(&d->found, "%s",
 		              kind == BOARD_MISSING && !*line->remedy ? line->text : line->remedy);
 	}
-	report_serial(d);
 	if (*d->board.master && lacks(d, needs_master)) {
 		report_add(&d->found, needed ? BOARD_NOTE : BOARD_MISSING,
 		           "the kernel has no 1-Wire master, as for a sensor at a GPIO pin");
@@ -261,6 +315,45 @@ void check_rights(struct doctor *d)
 		report_remedy(&d->found, "sudo systemd-tmpfiles --create");
 	}
 	check_person(d);
+}
+
+/* --- Signals --------------------------------------------------------------------------------- */
+
+/* That of the file, else what is there. */
+static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8])
+{
+	char port[PORT_TEXT];
+
+	find_port(d, port);
+	if (d->config && d->config->target_count && !seen_automatic(d))
+		return d->config->targets[0].text;
+	if (*port && d->board.missing && !seen_listens(d->root, OWSERVER_PORT))
+		snprintf(text, PORT_TEXT + 8, "serial:%s", port);
+	else
+		snprintf(text, PORT_TEXT + 8, "auto");
+	return text;
+}
+
+/*
+ * The way of docs/bring-up.md: the service has the chip, so it is stopped for the scan. What stands
+ * in a file, such as blocks for programs, stays.
+ */
+void check_signals(struct doctor *d)
+{
+	bool there = !access(d->file, F_OK) || errno != ENOENT;
+	char target[PORT_TEXT + 8];
+
+	/* an owsd that somebody runs by hand may need no file */
+	if (there ? !d->config || d->errors || d->config->item_count : !units_owsd(d))
+		return;
+	report_add(&d->found, BOARD_MISSING, there ? "%s has no signals" : "there is no %s",
+	           d->file);
+	if (there)
+		report_command(&d->found, SCAN_BEGIN "--merge %s " SCAN_END, d->instance,
+		               scan_target(d, target), d->file, d->file, d->instance);
+	else
+		report_command(&d->found, SCAN_BEGIN SCAN_END, d->instance, scan_target(d, target),
+		               d->file, d->instance);
 }
 
 /* --- The clock ------------------------------------------------------------------------------- */

@@ -8,4 +8,5 @@ void check_disk(struct doctor *d);
 void check_configuration(struct doctor *d);
 void check_board(struct doctor *d);
 void check_rights(struct doctor *d);
+void check_signals(struct doctor *d);
 void check_clock(struct doctor *d);

@@ -3,11 +3,15 @@
  * What owsctl doctor reads of a machine. All paths begin with the folder `root`, and what commands
  * of the system print is a file there, so that a recorded machine is as good as its own.
  */
+#include <errno.h>
 #include <grp.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "hal/base/time.h"
+#include "src/config/check/targets.h"
+#include "src/config/read/config.h"
 #include "src/tool/owsctl/machine/command.h"
 #include "src/tool/owsctl/machine/seen.h"
 
@@ -47,4 +51,53 @@ bool seen_in_group(const char *root, const char *user, const char *group)
 	if (in)
 		fclose(in);
 	return found;
+}
+
+bool seen_listens(const char *root, unsigned port)
+{
+	static const char *const files[] = {"tcp", "tcp6"};
+	char path[512], line[256];
+	unsigned at, state;
+	bool found = false;
+
+	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
+		snprintf(path, sizeof(path), "%s/proc/net/%s", root, files[i]);
+		FILE *in = fopen(path, "re");
+
+		/* "  0: 0100007F:10D0 00000000:0000 0A": 0A is a listener */
+		while (in && !found && fgets(line, sizeof(line), in))
+			found = sscanf(line, " %*u: %*[0-9A-F]:%4x %*[0-9A-F]:%*x %2x", &at,
+			               &state) == 2 &&
+			        at == port && state == 0x0A;
+		if (in)
+			fclose(in);
+	}
+	return found;
+}
+
+bool seen_automatic(const struct doctor *d)
+{
+	return d->config ? d->config->target_count && d->config->targets[0].automatic
+	                 : d->err == -ENOENT;
+}
+
+bool seen_owserver_stopped(const struct doctor *d, const char *target)
+{
+	const char *unit = seen_automatic(d) ? "systemd/system/*.wants/owserver.s*"
+	                                     : "systemd/system/owserver.service";
+	char text[TARGET_CANONICAL], *host = text + strlen("owserver:"), *port;
+	glob_t found;
+	bool installed;
+
+	target_canonical(target, text);
+	port = strrchr(text, ':');
+	if (strncmp(text, "owserver:", strlen("owserver:")) != 0 || port <= host)
+		return false;
+	*port++ = '\0';
+	if (strcmp(host, "localhost") != 0 && strncmp(host, "127.", 4) != 0 &&
+	    strcmp(host, "[::1]") != 0)
+		return false;
+	installed = faces_files(d->root, unit, &found) > 0;
+	globfree(&found);
+	return installed && !seen_listens(d->root, (unsigned)strtoul(port, NULL, 10));
 }

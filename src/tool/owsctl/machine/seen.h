@@ -48,5 +48,14 @@ struct doctor {
 
 /* The output of a command, in d->text; of a recorded machine its file recorded/NAME. */
 bool seen_output(struct doctor *d, const char *name, const char *const words[]);
+/* Does a program of this machine listen at the TCP port? */
+bool seen_listens(const char *root, unsigned port);
+/* Does owsd look by itself which way there is? */
+bool seen_automatic(const struct doctor *d);
+/*
+ * Is the target an owserver of this machine whose service is installed, and nobody listens? One
+ * that somebody has disabled is none of the ways of auto.
+ */
+bool seen_owserver_stopped(const struct doctor *d, const char *target);
 /* Is the user a member of the group, by etc/group below the root? */
 bool seen_in_group(const char *root, const char *user, const char *group);

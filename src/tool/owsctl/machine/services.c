@@ -89,10 +89,30 @@ static void check_twins(struct doctor *d)
 	report_command(&d->found, "kill %d    # or start it with another name, as -n TEST", pid[0]);
 }
 
+/* Was the file written after that? Two clocks, and one of them is coarse. */
+static bool is_written_since(const struct doctor *d, int64_t boot_ns)
+{
+	struct when now = when_now();
+	struct stat st;
+
+	return !stat(d->file, &st) &&
+	       now.boot - (now.wall - st.st_mtim.tv_sec * NS_PER_S - st.st_mtim.tv_nsec) >
+	               boot_ns - 10 * NS_PER_MS;
+}
+
+/* The line of the configuration that the reason of a refusal names, 0: none. */
+static int line_of(const struct doctor *d, const char *reason)
+{
+	size_t len = strlen(d->file);
+
+	return !strncmp(reason, d->file, len) && reason[len] == ':' ? atoi(reason + len + 1) : 0;
+}
+
 static void check_refused(struct doctor *d)
 {
 	struct ows_log_line refused;
-	char span[WHEN_TEXT];
+	char span[WHEN_TEXT], load[UNITS_COMMAND];
+	int line;
 
 	/* with errors in the file the remedy is above */
 	if (d->errors || ows_refused_reload(d->ows, &refused))
@@ -100,10 +120,15 @@ static void check_refused(struct doctor *d)
 	report_add(&d->found, BOARD_MISSING,
 	           "owsd goes on with what it loaded before: a reload was refused %s ago: %s",
 	           when_span(d->now_ns - refused.time_ns, span), refused.text);
-	report_command(&d->found,
-	               refused.level == 4 ? "sudo systemctl restart owsd@%s"
-	                                  : "sudo owsctl -n %s reload",
-	               d->instance);
+	line = line_of(d, refused.text);
+	if (line > 0 && !is_written_since(d, refused.time_ns))
+		report_remedy(&d->found, "correct line %d of %s, then: %s", line, d->file,
+		              units_load_command(d, load));
+	else
+		report_command(&d->found,
+		               refused.level == 4 ? "sudo systemctl restart owsd@%s"
+		                                  : "sudo owsctl -n %s reload",
+		               d->instance);
 }
 
 static bool has_counted(struct ows *ows, const char *name)

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Asks systemd for the units of an instance. */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "src/ground/text/shell.h"
 #include "src/tool/owsctl/machine/seen.h"
 #include "src/tool/owsctl/machine/units.h"
 
@@ -45,6 +47,25 @@ const struct unit *units_owsd(const struct doctor *d)
 bool unit_is_active(const struct unit *unit)
 {
 	return unit && !strcmp(unit->active, "active");
+}
+
+bool units_run(const struct doctor *d)
+{
+	return d->alive || ((*d->root || d->err == -EACCES) && unit_is_active(units_owsd(d)));
+}
+
+const char *units_load_command(const struct doctor *d, char text[UNITS_COMMAND])
+{
+	char word[SHELL_WORD];
+
+	if (units_run(d))
+		snprintf(text, UNITS_COMMAND, "sudo owsctl -n %s reload", d->instance);
+	else if (units_owsd(d))
+		snprintf(text, UNITS_COMMAND, "sudo systemctl restart owsd@%s", d->instance);
+	else
+		snprintf(text, UNITS_COMMAND, "owsd -n %s -c %s", d->instance,
+		         shell_word(d->file, word));
+	return text;
 }
 
 /* A link makes it start with the machine. */

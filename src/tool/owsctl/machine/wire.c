@@ -9,6 +9,7 @@
 #include "src/faces/show/when.h"
 #include "src/ground/signal/error.h"
 #include "src/ground/signal/quality.h"
+#include "src/ground/text/shell.h"
 #include "src/tool/owsctl/machine/seen.h"
 #include "src/tool/owsctl/machine/wire.h"
 
@@ -49,13 +50,18 @@ static void report_target(struct doctor *d, int index, const char *names, bool u
 		when_span(d->now_ns - note.time_ns, span);
 	report_add(&d->found, BOARD_MISSING, "target %s is %s%s%s", names,
 	           up ? "disturbed" : "down", noted ? ", for " : "", span);
-	if (noted)
+	if (!up && seen_owserver_stopped(d, names))
+		report_remedy(&d->found, "sudo systemctl start owserver");
+	else if (noted)
 		report_remedy(&d->found, SEEN_SAYS, "owsd", note.text);
 	else
 		report_remedy(&d->found, "%s", quality_remedy(OWS_Q_TARGET));
 }
 
-/* A wire that no way reaches is one fault. Of its ways that counts which this board may have. */
+/*
+ * A wire that no way reaches is one fault. Of its ways that counts which this board may have, or an
+ * owserver that only has to be started.
+ */
 static void report_wire_down(struct doctor *d, uint32_t wire)
 {
 	struct ows_target way, best;
@@ -64,11 +70,14 @@ static void report_wire_down(struct doctor *d, uint32_t wire)
 
 	for (int i = 0; ows_target(d->ows, i, &way) == 0; i++) {
 		const struct bus_ops *ops = bus_backend(way.name, &where);
+		bool stopped = seen_owserver_stopped(d, way.name);
 
-		if (way.group != wire || (found >= 0 && !(ops && ops->board_advice)))
+		if (way.group != wire || (found >= 0 && !stopped && !(ops && ops->board_advice)))
 			continue;
 		found = i;
 		best = way;
+		if (stopped)
+			break;
 	}
 	if (found >= 0)
 		report_target(d, found, best.name, false);
@@ -135,13 +144,19 @@ static void report_fault(struct doctor *d, const struct fault *fault)
 	const char *remedy = error_remedy(fault->err);
 	const char *word = ows_quality_text(fault->quality), *why = error_text(fault->err);
 	bool usable = fault->quality >= 0x40, same = !fault->err || !strcmp(word, why);
-	char more[32] = "";
+	char more[32] = "", file[SHELL_WORD];
 
 	if (fault->count > NAMES)
 		snprintf(more, sizeof(more), " and %u more", fault->count - NAMES);
 	report_add(&d->found, usable ? BOARD_NOTE : BOARD_MISSING, "%s%s: %s%s%s", fault->names,
 	           more, word, same ? "" : ": ", same ? "" : why);
 	report_remedy(&d->found, "%s", *remedy ? remedy : quality_remedy(fault->quality));
+	/* it names the new chip of the same family */
+	if (fault->err == -ENODEV && d->config)
+		report_remedy(&d->found,
+		              "%s; was the chip exchanged? sudo owsctl -n %s scan --rio --merge %s "
+		              ">/dev/null",
+		              remedy, d->instance, shell_word(d->file, file));
 }
 
 /* A short, or a bridge that is dead, stands before what follows from it. */
