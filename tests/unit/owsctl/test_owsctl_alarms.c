@@ -76,6 +76,21 @@ static void test_without_alarms_there_are_only_the_titles(void)
 	TEST_ASSERT_EQUAL_STRING("[]\n", out);
 }
 
+static void test_what_nobody_measured_is_no_value(void)
+{
+	struct ows_sample sample = {.value = 5, .quality = OWS_Q_NO_DEVICE, .err = -ENODEV};
+	struct ows_attrs attrs = {.flags = OWS_ATTR_ALARM_UNARMED |
+	                                   (OWS_UNARMED_NO_POR - 1) << OWS_ATTR_ALARM_WHY_SHIFT};
+
+	image_publish(&in.image, DOOR, &sample, &attrs, NULL);
+	run(verb_alarms, "alarms");
+	holds(out, "-      -  device absent\n");
+	run(verb_alarms, "alarms --json");
+	holds(out, "\"value\":null");
+	run(verb_get, "get --json door");
+	holds(out, "\"value\":null");
+}
+
 static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the_table(void)
 {
 	static const struct {
@@ -374,6 +389,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_without_alarms_there_are_only_the_titles);
+	RUN_TEST(test_what_nobody_measured_is_no_value);
 	RUN_TEST(test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the_table);
 	RUN_TEST(test_an_output_that_reads_otherwise_stands_in_the_table);
 	RUN_TEST(test_a_word_that_no_signal_matches_is_refused);

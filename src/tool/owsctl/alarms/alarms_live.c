@@ -36,11 +36,12 @@ static const struct table_column columns[] = {
 
 static void alarms_live_add_row(struct live *live, const struct present *alarm)
 {
-	char value[128], words[READING_WORDS], span[WHEN_TEXT] = "-";
+	char value[128] = "-", words[READING_WORDS], span[WHEN_TEXT] = "-";
 	const char *state = alarm->unarmed ? unarmed_text(alarm->unarmed) : alarm->state;
 
 	reading_round(live->reading, alarm->decimals);
-	reading_show(live->reading, value, sizeof(value));
+	if (reading_has_value(live->reading))
+		reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)
 		when_span(live->now.boot - alarm->since_ns, span);
 	table_add(live->table, (const char *const[]){alarm->name, alarm->kind, state, span, value,
