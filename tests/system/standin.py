@@ -52,7 +52,7 @@ LOOKED_AT = {
     "ansible-playbook": [r"-i inventory site\.yml( --check --diff| --limit \w+| -e owsd_state=latest)?"],
     "reboot": [""],
     "setpriv": ["--reuid owsd-notify --regid owsd --init-groups owsd-notify --test"],
-    "ssh": [r"(-[nt] )?pi\d owsctl (list|watch|reload|--json stats)"],
+    "ssh": [r"(-[nt] )?pi\d (sudo )?owsctl (list|watch|reload|--json stats)"],
     "i2cdetect": [r"-y \d"],
     "mbpoll": [r"-m tcp -0 -1 -t 4:float -B -r 46002 -c 3 192\.168\.1\.10"],
     "gpiodetect": [""], "gpioinfo": [""], "lsusb": [""],
