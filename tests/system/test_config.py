@@ -316,7 +316,7 @@ def test_an_edit_of_the_file_of_a_running_owsd_says_how_it_is_loaded(scene):
         return done.stderr
     assert said(file, "set", "x", "Unit=K") == "", "nobody runs"
     daemon = scene.owsd(file)
-    hint = f"owsctl: owsd {daemon.name} runs with this file: owsctl -n {daemon.name} reload has it loaded\n"
+    hint = f"owsctl: owsd {daemon.name} goes on as before until you run: owsctl -n {daemon.name} reload\n"
     assert said(file, "rename", "x", "kitchen") == hint
     assert said(file, "unset", "kitchen", "Unit") == hint
     assert said(other, "rename", "x", "kitchen") == ""

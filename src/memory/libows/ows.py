@@ -24,6 +24,7 @@ From a shell:  python3 -m ows [-n INSTANCE] [NAME [VALUE]]
 from __future__ import annotations
 
 import ctypes
+import difflib
 import enum
 import errno
 import math
@@ -345,6 +346,16 @@ def _fail(err: int, what: str | None = None) -> NoReturn:
     raise kind(-err, SAYS.get(-err) or os.strerror(-err), what)
 
 
+def _rights(instance: str, control: bool) -> str:
+    """What this program has no right to, and who has."""
+    h = ctypes.c_void_p()
+    if control and _lib.ows_open_as(_bytes(instance), 0, b"ows.py", ctypes.byref(h)) == 0:
+        _lib.ows_close(h)
+        return (f"no right to set the signals of {instance}: that is for group owsd-control, or "
+                "for whom ControlAllow names")
+    return f"no right to see the signals of {instance}: that is for group owsd"
+
+
 def now_ns() -> int:
     """The clock of all times here."""
     return _lib.ows_now()
@@ -400,6 +411,8 @@ class Ows:
                                ctypes.byref(self._h))
         if err == -errno.ENOENT:
             raise NotRunning(instance)
+        if err == -errno.EACCES:
+            raise PermissionError(errno.EACCES, _rights(instance, control))
         if err:
             _fail(err)
         self._read_infos()
@@ -455,7 +468,7 @@ class Ows:
         if name not in self._ids:
             got = _lib.ows_find(self._handle(), _bytes(name))
             if got == -errno.ENOENT:
-                raise KeyError(name)
+                raise self._unknown(name)
             if got < 0:
                 _fail(got)
             self._ids[name] = got
@@ -667,9 +680,13 @@ class Ows:
         raise ValueError(f"{name}: a {kind.name.lower()}{' with ' * bool(limits)}"
                          f"{' and '.join(limits)} cannot hold {value!r}")
 
+    def _unknown(self, name: str) -> KeyError:
+        near = difflib.get_close_matches(name, self._infos, 1)
+        return KeyError(f"{name}: did you mean {near[0]}?" if near else name)
+
     def _refuse(self, err: int, name: str) -> NoReturn:
         if err == -errno.ENOENT:
-            raise KeyError(name)
+            raise self._unknown(name)
         if err == -errno.ERANGE:
             raise ValueError(f"{name}: out of range")
         _fail(err, name)
@@ -986,7 +1003,8 @@ def main(arguments: list[str]) -> int:
                 return 0
             for name in arguments or signals:
                 value = signals[name]
-                shown = int(value.value) if value.type == BOOL else value.value
+                known = value.good or value.measured_ns
+                shown = "-" if not known else int(value.value) if value.type == BOOL else value.value
                 print(name, shown, value.text, f"{value.age:.1f}s", sep="\t")
     except KeyError as e:
         print(f"no signal {e}", file=sys.stderr)

@@ -290,7 +290,8 @@ static void hint_at_reload(const char *file)
 	if (!instance_of_file(file, name))
 		return;
 	usual = !strcmp(name, "OWS");
-	ctl_tell("owsd %s runs with this file: owsctl %s%s%sreload has it loaded", name,
+	ctl_tell("owsd %s goes on as before until you run: %sowsctl %s%s%sreload", name,
+	         strncmp(file, CONFIG_DIR "/", strlen(CONFIG_DIR "/")) ? "" : "sudo ",
 	         usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
 }
 

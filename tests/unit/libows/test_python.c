@@ -112,10 +112,12 @@ static void test_its_signals_are_like_a_dictionary(void)
 	       "print(s[\"room1\"].value, s[\"room1_Value\"].value, s[name + \"__room1\"].value)\n"
 	       "print(s.info(name + \"__room1\").path, s.info(\"relay\").type == ows.BOOL)\n"
 	       "for n in (\"nobody\", \"\", \"ELSE__room1\", None): print(error(s.get, n))\n"
+	       "try: s.get(\"raley\")\nexcept KeyError as e: print(e)\n"
 	       "s.close()\n"
 	       "print(error(s.get, \"room1\"), error(s.stale), error(s.close))",
 	       "room1 relay count label deep room1_Age 6 True False\n21.5 21.5 21.5\n"
 	       "/28.1/temperature True\nKeyError\nKeyError\nKeyError\nTypeError\n"
+	       "'raley: did you mean relay?'\n"
 	       "ValueError ValueError None\n");
 }
 
