@@ -156,30 +156,32 @@ func openImage(place, instance string) (*image, error) {
 	return m, nil
 }
 
-// The first living image, else the first at all.
-func find(instance string) (*image, string, error) {
+// The first living image in these places, else the first at all.
+func find(where []string, instance string) (*image, error) {
 	var first *image
-	var place string
 	var reason error
-	for _, where := range places() {
-		m, err := openImage(where, instance)
+	for _, place := range where {
+		m, err := openImage(place, instance)
 		if err != nil {
 			if reason == nil || errors.Is(reason, syscall.ENOENT) {
 				reason = err
 			}
 			continue
 		}
-		if m.state() == live && m.beats(bootTime()) {
-			return m, where, nil
+		if first == nil || m.lives(bootTime()) {
+			first, m = m, first
 		}
-		if first == nil {
-			first, place = m, where
+		if m != nil {
+			syscall.Munmap(m.memory)
+		}
+		if first.lives(bootTime()) {
+			break
 		}
 	}
 	if first == nil {
-		return nil, "", reason
+		return nil, reason
 	}
-	return first, place, nil
+	return first, nil
 }
 
 func (m *image) inside(off, count, size uint32) bool {
@@ -301,6 +303,8 @@ func (m *image) beats(now int64) bool {
 	return ok && now-i64(slot, 8) <= dead && i64(slot, 8)-now <= dead
 }
 
+func (m *image) lives(now int64) bool { return m.state() == live && m.beats(now) }
+
 // Is another image due? Looks at the file's name once a second, while the heart stands still.
 func (m *image) stale(now int64) bool {
 	if m.state() != live {
@@ -415,12 +419,12 @@ func (m *image) wait(news uint32) {
 }
 
 // The present image, if there is another one by now and it is live.
-func (m *image) next(place, instance string) *image {
-	other, err := openImage(place, instance)
+func (m *image) next(where []string, instance string) *image {
+	other, err := find(where, instance)
 	if err != nil {
 		return m
 	}
-	if other.state() != live {
+	if other.state() != live || other.device == m.device && other.inode == m.inode {
 		syscall.Munmap(other.memory)
 		return m
 	}
@@ -429,12 +433,15 @@ func (m *image) next(place, instance string) *image {
 	return other
 }
 
-func follow(m *image, place, instance string, until time.Time) {
+func follow(m *image, instance string, until time.Time) {
 	next, all, alive := uint32(0), true, false
+	where := places() // until it meets a living owsd; then it stays there
 	for time.Now().Before(until) {
 		news, now := m.word(newsOff), bootTime()
-		if m.stale(now) {
-			if other := m.next(place, instance); other != m {
+		if m.lives(now) {
+			where = []string{filepath.Dir(m.path)}
+		} else if m.stale(now) || len(where) > 1 {
+			if other := m.next(where, instance); other != m {
 				m, all = other, true
 				continue
 			}
@@ -446,7 +453,7 @@ func follow(m *image, place, instance string, until time.Time) {
 			list, next, all = m.changed(next)
 		}
 		// What a dead owsd leaves turns bad by itself
-		if beats := m.state() == live && m.beats(now); beats != alive {
+		if beats := m.lives(now); beats != alive {
 			alive, all = beats, true
 			fmt.Println(map[bool]string{true: "# owsd lives", false: "# owsd is dead"}[alive])
 		}
@@ -469,14 +476,14 @@ func main() {
 	seconds := flag.Float64("f", 0, "follow the changes for so many seconds")
 	what := flag.String("l", "", "list another area")
 	flag.Parse()
-	m, place, err := find(*instance)
+	m, err := find(places(), *instance)
 	if err != nil {
 		fmt.Fprintln(os.Stderr, "cannot open owsd's image:", err)
 		os.Exit(1)
 	}
 	switch {
 	case *seconds > 0:
-		follow(m, place, *instance, time.Now().Add(time.Duration(*seconds*1e9)))
+		follow(m, *instance, time.Now().Add(time.Duration(*seconds*1e9)))
 	case *what != "":
 		if !m.list(*what) {
 			flag.Usage()

@@ -116,8 +116,8 @@ enum ows_mode {
  * Open the instance (NULL: "OWS"). System calls, allocates. Free with ows_close().
  * It is looked for in the directory that OWS_DIR of the environment names; without that in
  * $XDG_RUNTIME_DIR/owsd (else /dev/shm/owsd-UID; neither for root) and in /run/owsd, the
- * service's: the first with a living owsd of that name, else the first with its image. The handle
- * stays with that directory.
+ * service's: the first with a living owsd of that name, else the first with its image. As soon as
+ * the handle has met a living owsd, it stays with that directory; until then it looks in all again.
  * OWS_CONTROL needs an owsd that runs, and waits for its answer, 2 s at most.
  * -ENOENT: no owsd of that name has run, or, for OWS_CONTROL, runs; -EACCES: no permission (group
  * owsd may read; ControlAllow of the configuration, else group owsd-control, may set); -EPROTO: not

@@ -367,6 +367,24 @@ while True:
     time.sleep(0.05)  # pace
 """
 
+# The same for a program that follows the changes
+CHANGES = PLACE + """
+import sys
+import ows
+s = ows.Ows(sys.argv[1])
+changes = s.changes()
+while True:
+    try:
+        for names in changes:
+            if "room" in names:
+                print(place(), s.get("room").good, flush=True)
+    except ows.Stale:
+        try:
+            s.reopen()
+        except OSError:
+            pass
+"""
+
 
 def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
     service = daemon_of(scene)
@@ -411,6 +429,28 @@ def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
     assert "image" in faulty.leftovers(service.name)
     done = scene._run([*as_plc, programs() / "owsctl", "remove", service.name], 30)
     assert done.returncode == 1 and "no right to remove" in done.stderr, done
+
+
+def test_a_program_that_found_the_image_of_a_dead_owsd_finds_the_one_that_lives(scene):
+    service = daemon_of(scene)
+    good(scene, service.name)
+    home = folder_of("plc", private.room() / "dead")
+    as_plc = at_home("plc", XDG_RUNTIME_DIR=home, PYTHONPATH=programs())
+    owsctl = [*as_plc, programs() / "owsctl", "-n", service.name]
+    for end in (owsdtest.Program.stop, owsdtest.Program.kill):
+        own = scene.start([*as_plc, programs() / "owsd-sim", "-n", service.name, "-c", service.config])
+        until(lambda: "from down to up" in own.log(), 20, own.log)
+        end(own)
+        service.freeze()
+        until(lambda: f"of {home}/owsd " in scene._run([*owsctl, "list"], 30).stderr, 20, "none of them lives")
+        watch = scene.start([*as_plc, "/usr/bin/python3", "-c", WATCH, service.name])
+        follow = scene.start([*owsctl, "watch", "-l", "room"])
+        changes = scene.start([*as_plc, "/usr/bin/python3", "-c", CHANGES, service.name])
+        until(lambda: f"{home}/owsd False" in watch.log() and "False" in changes.log(), 20, watch.log)
+        service.thaw()
+        until(lambda: watch.log().endswith(f"{owsdtest.place()} True\n"), 20, watch.log)
+        until(lambda: changes.log().endswith(f"{owsdtest.place()} True\n"), 20, changes.log)
+        until(lambda: re.search("room.*21.5.*good", follow.log()), 20, follow.log)
 
 
 def test_a_strangers_failed_start_leaves_nothing_that_stops_owsd(scene):

@@ -7,8 +7,13 @@
 #include "hal/base/time.h"
 #include "src/memory/libows/handle.h"
 
-/* The time between two looks whether the name leads to another image. */
+/* The time between two looks whether there is another image. */
 #define ALIVE_LOOK_NS NS_PER_S
+/* The least age of a dead heartbeat. */
+#define ALIVE_LEAST_NS (2 * NS_PER_S)
+
+/* The greatest age of a living owsd's heartbeat. */
+int64_t alive_dead_after(const struct ows_map *map);
 
 /* Checks the heartbeat, without the answer that is kept for this now_ns. */
 bool alive_find(struct ows *h, int64_t now_ns);
@@ -28,7 +33,16 @@ static inline int handle_state(const struct ows *h)
 }
 
 /*
- * The same, and checks once a second, while the heart stands still, whether the name leads to
- * another image: at most one system call.
+ * The same, and checks once a second, while the heart stands still, whether there is another image:
+ * one system call, if the handle is settled.
  */
 int alive_look(struct ows *h, int64_t now_ns);
+
+/* Does the name lead to another image, or does an owsd live that an unsettled handle may take? */
+bool alive_is_elsewhere(const struct ows *h);
+
+/*
+ * Map the image of the first of the handle's directories with a living owsd; dead_too: of the first
+ * with an image. -ENOENT, or what is wrong with the first image that cannot be mapped.
+ */
+int alive_open(const struct ows *h, bool dead_too, struct ows_map *map, const char **dir);

@@ -52,16 +52,6 @@ static int look_at_all(const struct ows *h, struct ows_cursor *cursor, int64_t n
 	return -EOVERFLOW;
 }
 
-/* Is the next owsd there? Leaves errno alone. */
-static bool is_elsewhere(const struct ows *h)
-{
-	int saved = errno;
-	bool elsewhere = map_is_elsewhere(&h->map, h->dir, h->instance);
-
-	errno = saved;
-	return elsewhere;
-}
-
 static bool is_of_image(const struct ows *h, const struct ows_cursor *cursor)
 {
 	return cursor->flags & BEGUN && cursor->start_id == h->map.image->start_id &&
@@ -110,7 +100,7 @@ static int changes_look(struct ows *h, struct ows_cursor *cursor, int *signals, 
 	int got;
 
 	alive_look(h, now_ns);
-	if (h->orphan || (state != OWS_STATE_LIVE && !ended) || (ended && is_elsewhere(h)))
+	if (h->orphan || (state != OWS_STATE_LIVE && !ended) || (ended && alive_is_elsewhere(h)))
 		return -ESTALE;
 	if (!is_of_image(h, cursor) || lost != ((cursor->flags & LOST) != 0) ||
 	    handle_age(now_ns, cursor->looked_ns) > CURSOR_KEEPS_NS)

@@ -69,7 +69,7 @@ struct ows {
 	/* Does owsd live? Computed once for each now_ns, which is alive_now */
 	int64_t alive_now, dead_after_ns;
 	bool alive;
-	bool orphan; /* owsd is dead, and a name leads to another file; checked once a second */
+	bool orphan; /* owsd is dead, and there is another image; checked once a second */
 	int64_t looked_ns;
 
 	/* The controller: of OWS_CONTROL, and of OWS_READ after ows_fd() */
@@ -88,7 +88,10 @@ struct ows {
 
 	enum ows_mode mode;
 	char instance[SEGMENT_NAME_MAX + 1];
-	char dir[DIR_PATH]; /* the directory that it was found in */
+	char dirs[DIRS][DIR_PATH]; /* where it looks */
+	int dir_count;
+	const char *dir; /* the one of them that has the image */
+	bool settled;    /* it stays there: it has met a living owsd, or there is no other */
 };
 
 /* Does the handle's connection belong to the process that this one was forked from? */

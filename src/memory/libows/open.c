@@ -109,20 +109,16 @@ static void find_free(struct ows *h)
 
 /* --- The handle ------------------------------------------------------------------------------ */
 
-#define DEAD_LEAST_NS (2 * NS_PER_S)
-#define OPEN_NS DEAD_LEAST_NS          /* the longest wait of ows_open() for owsd's welcome */
+#define OPEN_NS ALIVE_LEAST_NS         /* the longest wait of ows_open() for owsd's welcome */
 #define OPEN_SLICE_NS (50 * NS_PER_MS) /* then it looks whether there is another image */
 #define REOPEN_NS (20 * NS_PER_MS)     /* the longest wait of ows_reopen() */
 
 static void take_map(struct ows *h, const struct ows_map *map)
 {
-	int64_t period = map->image->period_ns;
-
 	h->map = *map;
 	h->alive_now = h->looked_ns = INT64_MIN;
 	h->orphan = false;
-	h->dead_after_ns = period > DEAD_LEAST_NS / 3 && period < INT64_MAX / 3 ? 3 * period
-	                                                                        : DEAD_LEAST_NS;
+	h->dead_after_ns = alive_dead_after(map);
 }
 
 /* Become a controller of the image that is there, which may be replaced meanwhile. */
@@ -148,40 +144,26 @@ static int open_joined(struct ows *h)
 			take_map(h, &map);
 		}
 	}
-	if (!err)
+	if (!err) {
+		h->settled = true;
 		meet_take(h);
+	}
 	return err;
 }
 
-static int try_dir(struct ows *h, const char *dir)
+/* The first directory with a living owsd, else the first with an image. */
+static int map_first_dir(struct ows *h)
 {
 	struct ows_map map;
-	int err = map_open(dir, h->instance, &map);
+	int err = 0;
 
-	if (err)
-		return err;
-	memcpy(h->dir, dir, strlen(dir) + 1);
-	take_map(h, &map);
-	return 0;
-}
-
-/* The first directory with a living owsd, else the first with an image. */
-static int map_first_dir(struct ows *h, char dirs[DIRS][DIR_PATH], int count)
-{
-	int why = -ENOENT;
-
-	for (int any = count == 1; any < 2; any++)
-		for (int i = 0; i < count; i++) {
-			int err = try_dir(h, dirs[i]);
-
-			if (!err && (any || (alive_find(h, ows_now()) && !handle_state(h))))
-				return 0;
-			if (!err)
-				map_close(&h->map);
-			else if (why == -ENOENT)
-				why = err;
-		}
-	return why;
+	h->settled = alive_open(h, false, &map, &h->dir) == 0;
+	if (!h->settled)
+		err = alive_open(h, true, &map, &h->dir);
+	h->settled |= h->dir_count == 1;
+	if (!err)
+		take_map(h, &map);
+	return err;
 }
 
 static int open_one(char dirs[DIRS][DIR_PATH], int count, const char *instance, enum ows_mode mode,
@@ -199,7 +181,9 @@ static int open_one(char dirs[DIRS][DIR_PATH], int count, const char *instance, 
 	memcpy(h->program, program, strnlen(program, sizeof(h->program) - 1));
 	h->mode = mode;
 	join_none(&h->join);
-	err = map_first_dir(h, dirs, count);
+	memcpy(h->dirs, dirs, (size_t)count * DIR_PATH);
+	h->dir_count = count;
+	err = map_first_dir(h);
 	if (!err && mode == OWS_CONTROL)
 		err = open_joined(h);
 	errno = saved;
@@ -259,8 +243,13 @@ void ows_close(struct ows *h)
 /* Map the present image, and get the memory that belongs to it. */
 static int open_present(struct ows *h, struct ows_map *map)
 {
-	int err = map_open(h->dir, h->instance, map);
+	const char *before = h->dir;
+	int err = 0;
 
+	if (h->settled || alive_open(h, false, map, &h->dir)) {
+		h->dir = before;
+		err = map_open(h->dir, h->instance, map);
+	}
 	if (err)
 		return err;
 	/* A retired image is no better than the one that the handle has */
@@ -268,8 +257,10 @@ static int open_present(struct ows *h, struct ows_map *map)
 		err = -ENOENT;
 	else if (h->mine != NULL)
 		err = meet(h, map, ows_now() + REOPEN_NS);
-	if (err)
+	if (err) {
 		map_close(map);
+		h->dir = before;
+	}
 	return err == -EAGAIN ? -ENOENT : err;
 }
 
