@@ -137,7 +137,8 @@ double words_number(struct words *words, const char *what, double least, double 
 	if (!end || *end)
 		words_fail(words, "\"%s\": expected %s, a number", words->word, what);
 	else if (value < least || value > most)
-		words_fail(words, "%s: %s goes from %g to %g", words->word, what, least, most);
+		words_fail(words, "%s: %s goes from %.10g to %.10g", words->word, what, least,
+		           most);
 	else
 		return value;
 	return least;
@@ -199,8 +200,8 @@ static void words_check(struct words *words, const struct sim_input *input, doub
 	if (input->pin && value != 0 && value != 1)
 		words_fail(words, "%g: %s is 0 or 1", value, input->name);
 	else if (bounded && (value < input->least || value > input->most))
-		words_fail(words, "%g: %s goes from %g to %g", value, input->name, input->least,
-		           input->most);
+		words_fail(words, "%.10g: %s goes from %.10g to %.10g", value, input->name,
+		           input->least, input->most);
 }
 
 /* Steps end at the first word that is no number, which belongs to what follows the curve. */

@@ -91,7 +91,7 @@ static void test_a_wrong_line_is_named_with_its_column(void)
 		{"chip DS2482-100 0x18\nat 5s every 0s short 0x18",
 	         "s:2:13: the repetition is 1us at least"},
 		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature 128.5",
-	         "s:2:37: 128.5: temperature goes from -128 to 127.938"},
+	         "s:2:37: 128.5: temperature goes from -128 to 127.9375"},
 		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature ramp 5 -129 1m",
 	         "s:2:44: -129: temperature goes from -128"},
 		{"chip DS2482-100 0x18\nDS18B20 28.000000000001 temperature sine 100 29 1m",
