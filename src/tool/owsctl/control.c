@@ -168,7 +168,7 @@ static int do_line(struct control *control)
 	for (size_t i = 0; i < sizeof(orders) / sizeof(orders[0]); i++)
 		if (strcmp(word, orders[i].word) == 0)
 			return orders[i].run(control, rest);
-	control->why = "a line is NAME=VALUE, beat, for, ack, shelve or quit";
+	control->why = "a line is NAME=VALUE (no blanks around =), beat, for, ack, shelve or quit";
 	return -EINVAL;
 }
 
