@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 
 // Reads the signals of owsd from shared memory without libows, as docs/shared-memory.md describes
-// it: for those who write a reader in a language of their own.
+// it: for those who write a reader in a language of their own. Columns of a signal: name, type, value,
+// quality, age in seconds, err, count of updates, detail (1: simulated).
 //
 //	go build -o reader reader.go reader_lists.go
 //	./reader [-n INSTANCE] [SIGNAL...]            values, once
@@ -379,8 +380,8 @@ func (m *image) printSignal(record uint32, now int64) {
 			quality = qualityStale
 		}
 	}
-	fmt.Printf("%s\t%s\t%s\t0x%02x\t%.3f\t%d\t%d\n", m.name(record), typeNames[m.kind(record)],
-		value, quality, float64(age)/1e9, int32(u32(slot, 24)), u32(slot, 32))
+	fmt.Printf("%s\t%s\t%s\t0x%02x\t%.3f\t%d\t%d\t%d\n", m.name(record), typeNames[m.kind(record)],
+		value, quality, float64(age)/1e9, int32(u32(slot, 24)), u32(slot, 32), slot[29])
 }
 
 func (m *image) printAll() {

@@ -73,7 +73,7 @@ def by_go(lines):
             return float(text)
         return text if kind == "string" else text == "1" if kind == "bool" else int(text)
     return {name: (kind, value(kind, text) if int(changes) else None, int(quality, 16), int(err))
-            for name, kind, text, quality, _, err, changes in lines}
+            for name, kind, text, quality, _, err, changes, _ in lines}
 
 
 def test_it_reads_every_type_as_owsctl_does(scene):
@@ -85,6 +85,10 @@ def test_it_reads_every_type_as_owsctl_does(scene):
     assert by_go(read(program, daemon.name)) == there, (read(program, daemon.name), there)
     assert there["float"][1] == 21.0625 and there["large"][1] == 77 and there["string"][1] == "DS18B20"
     assert [line[0] for line in read(program, daemon.name, "word", "bool")] == ["word", "bool"]
+    with ows.Ows(daemon.name) as signals:
+        detail = signals.get("word").detail
+    assert detail & ows.DETAIL_SIMULATED
+    assert read(program, daemon.name, "word")[0][7] == str(detail)
     missing = subprocess.run([program, "-n", daemon.name, "none"], capture_output=True, timeout=60)
     assert missing.returncode == 1
 
