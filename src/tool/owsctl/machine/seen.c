@@ -94,6 +94,9 @@ bool seen_owserver_stopped(const struct doctor *d, const char *target)
 	if (strncmp(text, "owserver:", strlen("owserver:")) != 0 || port <= host)
 		return false;
 	*port++ = '\0';
+	/* at another port it is maybe not that of the package */
+	if (strcmp(port, "4304") != 0)
+		return false;
 	if (strcmp(host, "localhost") != 0 && strncmp(host, "127.", 4) != 0 &&
 	    strcmp(host, "[::1]") != 0)
 		return false;
