@@ -82,12 +82,12 @@ static bool may_miss(const struct listeners *l, unsigned i, int err)
 static void tell_served(const struct listeners *l, unsigned i)
 {
 	struct listen_address at = l->at[i];
-	struct sockaddr_storage to;
+	struct sockaddr_in to = {0};
 	socklen_t len = sizeof(to);
 
-	/* the port stands at the same place in both */
+	/* one of IPv6 is cut off, and has its port at the same place */
 	if (getsockname(l->fds[i], (struct sockaddr *)&to, &len) == 0)
-		at.port = ntohs(((const struct sockaddr_in *)&to)->sin_port);
+		at.port = ntohs(to.sin_port);
 	l->tell(l->face, &at, true);
 }
 

@@ -188,7 +188,7 @@ static void check_port(struct doctor *d, const char *target)
 		else
 			report_command(&d->found,
 			               "ps -fp %d    # it has to end, or to take another",
-			               pid ? atoi(pid + strlen(", process ")) : 0);
+			               pid ? (int)strtol(pid + strlen(", process "), NULL, 10) : 0);
 	} else if ((d->err == -EACCES || lacks(d, needs_port)) &&
 	           rivals_hidden(proc, who, sizeof(who))) {
 		report_add(&d->found, BOARD_MISSING, "%s runs, and may have the port of target %s",

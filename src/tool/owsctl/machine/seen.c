@@ -56,8 +56,7 @@ bool seen_in_group(const char *root, const char *user, const char *group)
 bool seen_listens(const char *root, unsigned port)
 {
 	static const char *const files[] = {"tcp", "tcp6"};
-	char path[512], line[256];
-	unsigned at, state;
+	char path[512], line[256], at[5], state[3];
 	bool found = false;
 
 	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
@@ -66,9 +65,9 @@ bool seen_listens(const char *root, unsigned port)
 
 		/* "  0: 0100007F:10D0 00000000:0000 0A": 0A is a listener */
 		while (in && !found && fgets(line, sizeof(line), in))
-			found = sscanf(line, " %*u: %*[0-9A-F]:%4x %*[0-9A-F]:%*x %2x", &at,
-			               &state) == 2 &&
-			        at == port && state == 0x0A;
+			found = sscanf(line, " %*[0-9]: %*[0-9A-F]:%4[0-9A-F] %*s %2[0-9A-F]", at,
+			               state) == 2 &&
+			        strtoul(at, NULL, 16) == port && !strcmp(state, "0A");
 		if (in)
 			fclose(in);
 	}

@@ -105,7 +105,9 @@ static int line_of(const struct doctor *d, const char *reason)
 {
 	size_t len = strlen(d->file);
 
-	return !strncmp(reason, d->file, len) && reason[len] == ':' ? atoi(reason + len + 1) : 0;
+	return !strncmp(reason, d->file, len) && reason[len] == ':'
+	               ? (int)strtol(reason + len + 1, NULL, 10)
+	               : 0;
 }
 
 static void check_refused(struct doctor *d)
