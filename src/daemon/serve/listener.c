@@ -269,9 +269,7 @@ bool listeners_accept(struct serve *s)
 
 			if (fd == -EAGAIN)
 				s->waiting &= ~((uint32_t)1 << i);
-			/* the connection waits until a client leaves, or for a moment */
-			if (listen_is_full(fd))
-				s->look_ns = earlier_ns(s->look_ns, s->now_ns + LISTEN_PAUSE_NS);
+			/* the connection waits until a client leaves, or the next one comes */
 			if (fd == -EAGAIN || listen_is_full(fd))
 				break;
 			any = true;
