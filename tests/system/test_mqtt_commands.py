@@ -229,7 +229,7 @@ def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
     entity = json.loads(house.listener.last("homeassistant/device/owsd_28_A0B1C2000001/config"))["cmps"]
     assert [c["stat_t"] for c in entity.values() if c.get("uniq_id", "").endswith("temperature")] == ["owsd/pi7/hall"], entity
     assert house.last(f"chip/{SENSOR}/problem") == chip
-    until(lambda: "rename by user" in writer.log() and "for mqtt:127.0.0.1" in writer.log(), 20, writer.log)
+    until(lambda: "rename by user" in writer.log() and 'for "mqtt:127.0.0.1"' in writer.log(), 20, writer.log)
 
 
 def test_what_the_page_says_to_the_broker_does_what_it_says(scene):

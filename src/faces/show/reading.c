@@ -43,7 +43,11 @@ bool reading_filled(const struct reading *reading)
 
 bool reading_has_value(const struct reading *reading)
 {
-	return reading_filled(reading) && (reading->value.measured_ns || reading_good(reading));
+	bool is_zero = reading->value.type == OWS_STRING ? !reading->len
+	                                                 : reading->value.number == 0;
+
+	return reading_filled(reading) &&
+	       (reading->value.measured_ns || reading_good(reading) || !is_zero);
 }
 
 bool reading_good(const struct reading *reading)

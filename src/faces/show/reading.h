@@ -29,8 +29,8 @@ int reading_get(struct ows *h, int id, int64_t now_ns, struct reading *reading);
 /* Round the text for a person, to at most so many decimals; -1: not known, all are shown. */
 void reading_round(struct reading *reading, int decimals);
 /*
- * Is there one: was it ever read or written, or is it good as it is, like an attribute? What nobody
- * measured, as InitValue, is none.
+ * Is there one: was it ever read or written, is it good as it is, like an attribute, or does it
+ * begin with an InitValue that is not 0?
  */
 bool reading_has_value(const struct reading *reading);
 bool reading_good(const struct reading *reading);

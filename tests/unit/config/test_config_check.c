@@ -262,7 +262,8 @@ static void test_what_may_be_meant_is_not_mentioned(void)
 	         "PorAlarm por SetAlarm set_alarm=133333333 ResetLatch latch.BYTE=0 StaleAfter 20 "
 	         "PerFactor 50",
 	         ""},
-		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output PerFactor 300 StaleAfter 1",
+		{"Name x Path /29.B89115000000/PIO.3 Type bool IO output PerFactor 300 StaleAfter 1 "
+	         "ReadBack 0",
 	         ""},
 	};
 

@@ -314,7 +314,9 @@ static void test_python_says_in_a_sentence_why_it_opens_nothing(void)
 		const char *error;
 	} lies[] = {
 		{DOOR_NO_FDS, "OSError no segment of owsd, or of another version\n"},
-		{DOOR_REFUSES, "PermissionError Permission denied\n"},
+		{DOOR_REFUSES,
+	         "PermissionError no right to set the signals of python: that is for group "
+	         "owsd-control, or for whom ControlAllow names\n"},
 		{DOOR_SILENT, "TimeoutError Connection timed out\n"},
 		{DOOR_HANGS_UP, "NotRunning no owsd of the name python runs\n"},
 	};

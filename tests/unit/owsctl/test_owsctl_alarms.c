@@ -85,10 +85,6 @@ static void test_what_nobody_measured_is_no_value(void)
 	image_publish(&in.image, DOOR, &sample, &attrs, NULL);
 	run(verb_alarms, "alarms");
 	holds(out, "-      -  device absent\n");
-	run(verb_alarms, "alarms --json");
-	holds(out, "\"value\":null");
-	run(verb_get, "get --json door");
-	holds(out, "\"value\":null");
 }
 
 static void test_why_an_alarm_cannot_be_armed_names_the_key_and_stands_below_the_table(void)

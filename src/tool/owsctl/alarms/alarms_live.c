@@ -40,7 +40,8 @@ static void alarms_live_add_row(struct live *live, const struct present *alarm)
 	const char *state = alarm->unarmed ? unarmed_text(alarm->unarmed) : alarm->state;
 
 	reading_round(live->reading, alarm->decimals);
-	if (reading_has_value(live->reading))
+	/* nobody measured InitValue */
+	if (live->reading->value.measured_ns || reading_good(live->reading))
 		reading_show(live->reading, value, sizeof(value));
 	if (alarm->since_ns)
 		when_span(live->now.boot - alarm->since_ns, span);
