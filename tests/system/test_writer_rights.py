@@ -90,7 +90,7 @@ def test_who_may_ask_and_who_may_not(scene):
     assert (answer.status, answer.reload) == ("done", "done"), (done, service.writer.log())
     assert service.file.read_text() == text
     until(lambda: f"by user {EDITOR} (process" in service.writer.log() and
-          "for anna: done" in service.writer.log(), 20, service.writer.log)
+          'for "anna": done' in service.writer.log(), 20, service.writer.log)
     until(lambda: re.search(rf'asked for by "owsd-writer" \(process \d+, user {WRITER}\)', service.daemon.log()),
           20, service.daemon.log)
 
