@@ -42,3 +42,24 @@ newer() {
 	dpkg-deb -b --root-owner-group "$3/newer" "$3" >/dev/null
 	rm -rf "$3/newer"
 }
+
+# repository ARGUMENTS...: what make-repository makes, signed by a key that is made once, in $work/gpg
+repository() {
+	export GNUPGHOME="$work/gpg"
+	if [ ! -d "$GNUPGHOME" ]; then
+		mkdir -m 700 "$GNUPGHOME" || return 1
+		gpg --batch --passphrase '' --quick-generate-key packages ed25519 sign never || return 1
+	fi
+	sh board/make-repository "$@" packages
+	set -- $?
+	gpgconf --kill all
+	return "$1"
+}
+
+# newest DEBS DIR: the packages of the newest version for this machine, in DIR
+newest() {
+	arch=$(dpkg --print-architecture)
+	version=$(dpkg-deb -f "$(ls -t "$1"/owsd_*_"$arch".deb | head -n 1)" Version) || return 1
+	mkdir "$2" && cp "$1"/*_"${version}_$arch".deb "$1"/*_"${version}"_all.deb "$2" || return 1
+	rm -f "$2"/*-dbgsym_*
+}

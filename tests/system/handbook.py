@@ -62,6 +62,23 @@ def plain(text):
     return text.replace("\\-", "-").replace("\\e", "\\").replace("\\&", "")
 
 
+def console(text):
+    """The commands of a console block, each with what the page shows of it."""
+    commands = re.split(r"^\$ ", text, flags=re.M)
+    assert not commands[0].strip(), "a console block begins with a command: $ ..."
+    return [(command, expected) for command, _, expected in (c.partition("\n") for c in commands[1:])]
+
+
+def like(expected, said):
+    """Numbers, times, users and ... stand for anything; nothing expected: the page does not show it."""
+    expected, said = (re.sub(r"\d{4}-\d\d-\d\dT[\d:.+-]+", "TIME", re.sub(r"\(user \w+\)", "(user)", text))
+                      for text in (expected, said.replace(" (sim)", "")))
+    pattern = re.escape(re.sub(r"-?\d+(\.\d+)?[smhd]?\b", "\0", expected.strip()))
+    pattern = pattern.replace("\0", r"-?[\d.]+[smhd]?").replace(re.escape("..."), "(?s:.*)")
+    pattern = re.sub(r"(\\ |\\\n|\n)+", r"\\s+", pattern)
+    return not expected.strip() or re.fullmatch(pattern, said.strip())
+
+
 def prose(path):
     """The page without its blocks: (line number, text)."""
     inside = False
