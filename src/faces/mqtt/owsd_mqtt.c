@@ -7,8 +7,9 @@
 
 static int open_mqtt(struct face *face)
 {
-	static struct mqtt mqtt = {.broker.ops = &arrivals_ops};
+	static struct mqtt mqtt;
 
+	mqtt.broker.ops = &arrivals_ops;
 	face->own = &mqtt;
 	return mqtt_open(face);
 }

@@ -263,9 +263,10 @@ static void raise_limit(void)
 
 static int open_web(struct face *face)
 {
-	static struct web web = {.doors = {.epoll = -1}, .files = -1};
+	static struct web web;
 	int err;
 
+	web.doors.epoll = web.files = -1;
 	web.face = face;
 	web.since_ns = ows_now();
 	web.route = api_find;
