@@ -50,7 +50,7 @@ same 'nothing stays of any' '' "$(diff /tmp/before /tmp/after)"
 
 # shellcheck disable=SC2086
 does 'the packages are installed' $apt install $packages
-same 'their user is in the groups that it needs' 'dialout gpio i2c owsd owsd-control' \
+same 'their user is in the groups that it needs' 'dialout gpio i2c owsd owsd-config owsd-control' \
 	"$(id -nG owsd | tr ' ' '\n' | sort | tr '\n' ' ' | sed 's/ $//')"
 same 'who cannot log in' /usr/sbin/nologin "$(getent passwd owsd | cut -d: -f7)"
 does 'and that it has I2C' sh -c 'owsd --version | grep -q "^ *i2c "'
