@@ -32,10 +32,8 @@ INTRO = """# Properties, one by one
 
 What differs from owserver, for who leaves it. owserver 3.2p4 states {all} properties of {families} families in its
 `/structure`. Each was asked for twice, of the genuine owserver (over a DS9097) and of owsd (over a DS2482), with the
-same simulated chip, alone on its wire. All adapters that owsd drives have this alike; [w1.md](w1.md#what-there-is) has
-what the kernel's drivers give.
-
-`make properties-page` writes this page, and a test compares it.
+same simulated chip, alone on its wire. All adapters of owsd have this alike, but for [the kernel's
+drivers](w1.md#what-there-is). `make properties-page` writes this page.
 
 - **same**: the texts are equal, byte for byte. Running clocks may differ by {clock} s, as may the bytes of a page in
   which they are, and what a current adds up to by {volt:g} Vh or {amp:g} Ah: it begins with 0, so its scale is not seen
@@ -49,8 +47,8 @@ what the kernel's drivers give.
 - **not written**: owsd refuses it.
 
 {writable} can be written: the same values, two or more of each element that was chosen, by owserver to one chip and by
-owsd to another, and read back past the caches. What is no legal value was written too; where the two differ there
-alone, the property counts as "written same", and the last section has it.
+owsd to another, and read back past the caches. Where the two differ in illegal values alone, the property counts as
+"written same", and the last section has it.
 
 Type, access, size, array and life, as `/structure` has them, are those of owserver for {stated} of the {all}. The
 others are limits of the EDS0080 to EDS0085 and two names, see family 7E.
@@ -138,10 +136,10 @@ def by_reason(records):
     by, joined = collections.OrderedDict(), collections.OrderedDict()
     for verdict, name, reason in records:
         if verdict not in ("same", "written same", "write-only"):
-            by.setdefault((verdict, reason), []).append(name)
-    for (verdict, reason), found in by.items():
-        joined.setdefault((reason, tuple(found)), []).append(verdict)
-    return joined
+            by.setdefault((reason, name), []).append(verdict)
+    for (reason, name), verdicts in by.items():
+        joined.setdefault((reason, tuple(verdicts)), []).append(name)
+    return {(reason, tuple(found)): verdicts for (reason, verdicts), found in joined.items()}
 
 
 def section(family, chip, by, marks, counts):
@@ -227,7 +225,7 @@ def page():
     return "\n".join([
         "\n\n".join(p if p[0] in "#|" else fill(p) for p in intro.strip().split("\n\n")), "",
         "## What a user notices", "",
-        fill("What no comparison shows. The reasons of each property are further [below](#family-by-family)."),
+        fill("What no comparison shows. [Below](#family-by-family) are the properties one by one."),
         "", *[item(f"**{of}**: {note}") for of, note in notes()], "",
         "## How many", "",
         fill(", ".join(f"{sums[k]} {k}" for k in COUNTED[1:]) + "; of those that can be written " +
@@ -235,7 +233,7 @@ def page():
         fill(f"All is the same, read and written: {', '.join(alike)}."), "",
         "## Family by family", "",
         fill("How much is read, and written, the same; what is not, and why. A letter stands for a reason "
-             "that several families have:"), "",
+             "of several families:"), "",
         *[shared_reason(mark, reason, of[reason]) for reason, mark in marks.items()], "",
         *below,
         "## What is no legal value", "",
