@@ -9,8 +9,8 @@
  * The facts: how many thermometers are asked for (one thread serves all channels of the bus, so
  * those of all count); how long the slowest converts; what a reading and a verified start took
  * lately; the share of the time that requests of other kinds took lately; how long it will be until
- * the results that are under way on the channel are read. The rule stands at schedule_in_turn() and
- * in docs/native.md. All times are ns.
+ * the results that are under way on the channel are read. The rule stands at schedule_in_turn().
+ * All times are ns.
  *
  * Nothing here waits, allocates or uses the wire. The thread of the bus calls it.
  */
