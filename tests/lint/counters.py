@@ -25,6 +25,7 @@ COMMENTS = {"hal/owserver/owserver.c": "hal/owserver/talk.h", "hal/gpio/gpio.c":
 SOURCES = sorted({file for _, _, file, _ in LISTS} | set(COMMENTS.values()))
 MARKS = {"qualities": '.\\" from src/ground/signal/words_list.h\n', "counters": '.\\" from the lists of counters\n'}
 END = '.\\" to here\n'
+COLUMN = 26  # where the words of a counter begin
 
 
 def counters(texts, file, name):
@@ -51,6 +52,12 @@ def paragraph(text):
     return "".join(f"{line}\n" for line in textwrap.wrap(roff(text), 98, break_on_hyphens=False)).replace("\n.", "\n\\&.")
 
 
+def row(word, said):
+    """Two columns, which fit into 80 with the indent of a page."""
+    lines = "\n".join(textwrap.wrap(said, 73 - COLUMN, break_on_hyphens=False))
+    return f"\\fB{word}\\fR{' ' * (COLUMN - len(word))}" + roff(lines).replace("\n", "\n" + " " * COLUMN) + "\n"
+
+
 def qualities(texts):
     table, public = texts[words.TABLE], texts[words.PUBLIC]
     out = ".TP\n.BR good \", 0xC0, 192\"\nThe value can be used.\n"
@@ -64,8 +71,7 @@ def lists(texts):
     groups = {}
     for title, before, file, name in LISTS:
         groups.setdefault(title, []).extend((before + word, said) for word, said in counters(texts, file, name))
-    return "".join(f".PP\n{title}:\n" + "".join(f".TP\n.B {word}\n{paragraph(said[:1].upper() + said[1:] + '.')}"
-                                                  for word, said in sorted(rows))
+    return "".join(f".PP\n{title}:\n.PP\n.nf\n" + "".join(row(word, said) for word, said in sorted(rows)) + ".fi\n"
                    for title, rows in groups.items())
 
 

@@ -464,7 +464,7 @@ def test_each_counter_that_owsctl_prints_has_its_words(scene):
     daemon = scene.owsd(owsdtest.rio(f"sim:{wire}, {ports[0]}", []), "-l", ports[1])
     said = json.loads(scene.owsctl(daemon, "--json", "stats").stdout)["counters"]
     names = {re.sub(r"(?<=_wire_)\d+(?=_)", "N", counter["name"]) for counter in said}
-    missing = [name for name in names if f".B {name}\n" not in page]
+    missing = [name for name in names if f"\n\\fB{name}\\fR " not in page]
     assert len(names) > 80 and not missing, (len(names), missing)
 
 
