@@ -30,15 +30,15 @@ INTRO = """# The chips
 
 - **No real chip was at hand.** Each was simulated bit by bit ([tested.md](tested.md)).
 - **What it has** are the signals that `owsctl scan --rio` makes. `owsctl dir /ID` lists all
-  properties of a chip. [properties.md](properties.md) compares each with owserver's.
+  properties, [properties.md](properties.md) compares them with owserver's.
 - **The range** is what a chip can measure, with the error that its data sheet allows. A number
   outside is never a good value.
 - **Read back**: owsd notices when the chip does not do what was written.
-- **Alarm**: the chip takes part in the alarm search ([alarms.md](alarms.md)). The names are the
-  properties for `LatchAlarm` (*stays*: until `ResetLatch`) and `PorAlarm`.
-- **Ways**: each chip works over all adapters that owsd drives itself (`i2c:`, `usb:`, `serial:`,
-  `uart:`, `w1:netlink`); with a star also by the files of a driver of the kernel
-  ([w1.md](w1.md)). An owserver knows all codes of this page but: {missing}.
+- **Alarm**: the chip takes part in the [alarm search](alarms.md). The names are the properties for
+  `LatchAlarm` (*stays*: until `ResetLatch`) and `PorAlarm`.
+- **Ways**: all adapters that owsd drives itself (`i2c:`, `usb:`, `serial:`, `uart:`,
+  `w1:netlink`); with a star also the files of a driver of [the kernel](w1.md). An owserver knows
+  all codes of this page but: {missing}.
 """
 
 
