@@ -528,6 +528,6 @@ void clients_look(struct serve *s)
 		next = earlier_ns(next, limit_of(c));
 	}
 	s->look_ns = next;
-	/* one of the clients may be idle for long enough by now */
-	s->accepting |= s->held.is;
+	/* one of the clients may be idle for long enough by now, or a descriptor free */
+	accept_again(s);
 }

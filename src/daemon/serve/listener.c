@@ -269,7 +269,9 @@ bool listeners_accept(struct serve *s)
 
 			if (fd == -EAGAIN)
 				s->waiting &= ~((uint32_t)1 << i);
-			/* the connection waits until a client leaves, or the next one comes */
+			/* the connection waits until a client leaves, or for a moment */
+			if (listen_is_full(fd))
+				s->look_ns = earlier_ns(s->look_ns, s->now_ns + LISTEN_PAUSE_NS);
 			if (fd == -EAGAIN || listen_is_full(fd))
 				break;
 			any = true;

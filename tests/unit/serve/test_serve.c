@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/epoll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <time.h>
@@ -381,6 +382,32 @@ static void test_who_hangs_up_wants_no_answer(void)
 	TEST_ASSERT_EQUAL_INT(7, answer(fd));
 }
 
+static void test_who_came_while_no_descriptor_was_left_is_served_once_there_is_one(void)
+{
+	int sock = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0), lowest = dup(sock);
+	const struct timeval limit = {.tv_sec = 20};
+	struct sockaddr_un to = {.sun_family = AF_UNIX};
+	struct rlimit before, none;
+
+	/* the first one has its descriptor by then */
+	ask(fd, FRAME_NOP, NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	snprintf(to.sun_path, sizeof(to.sun_path), "%s", path);
+	setsockopt(sock, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
+	TEST_ASSERT_EQUAL_INT(0, getrlimit(RLIMIT_NOFILE, &before));
+	none = (struct rlimit){.rlim_cur = (rlim_t)lowest, .rlim_max = before.rlim_max};
+	close(lowest);
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &none));
+	TEST_ASSERT_EQUAL_INT(0, connect(sock, (void *)&to, sizeof(to)));
+	/* it looks for connections before it answers */
+	ask(fd, FRAME_NOP, NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	TEST_ASSERT_EQUAL_INT(0, setrlimit(RLIMIT_NOFILE, &before));
+	ask(sock, FRAME_NOP, NULL);
+	TEST_ASSERT_EQUAL_INT(0, answer(sock));
+	close(sock);
+}
+
 static void give_up(struct engine_guest *g)
 {
 	g->answer = (struct bus_answer){.err = -ETIMEDOUT};
@@ -594,5 +621,6 @@ int main(void)
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
 	RUN_TEST(test_directories_wait_for_each_other_when_all_rooms_are_taken);
 	RUN_TEST(test_who_hangs_up_wants_no_answer);
+	RUN_TEST(test_who_came_while_no_descriptor_was_left_is_served_once_there_is_one);
 	return UNITY_END();
 }
