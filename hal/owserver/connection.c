@@ -86,12 +86,8 @@ int connection_init(struct connection *connection, const struct bus_env *env, co
 /* Why the address that was tried last is of no use. Returns the error. */
 static int set_trouble(struct connection *connection)
 {
-	if (connection->stranger)
-		snprintf(
-			connection->trouble, sizeof(connection->trouble),
-			"%.36s: not believed, for the user %u serves it; a system user or root has to",
-			connection->peer, (unsigned)connection->stranger);
-	else
+	/* what is at the other addresses matters less than who is at one of them */
+	if (!connection->stranger)
 		snprintf(connection->trouble, sizeof(connection->trouble), "%.60s: %.36s%s",
 		         connection->peer, strerror(-connection->last_err),
 		         connection->last_err == -ECONNREFUSED ? "; does an owserver run there?"
@@ -109,6 +105,7 @@ static int resolve(struct connection *connection)
 	                      &connection->list);
 
 	connection->next = NULL;
+	connection->stranger = false;
 	snprintf(connection->peer, sizeof(connection->peer), "%.60s:%s", connection->host,
 	         connection->port);
 	if (!err) {
@@ -139,7 +136,6 @@ static void note_peer(struct connection *connection, const struct addrinfo *addr
 {
 	char host[48], port[8];
 
-	connection->stranger = 0;
 	if (getnameinfo(address->ai_addr, address->ai_addrlen, host, sizeof(host), port,
 	                sizeof(port), NI_NUMERICHOST | NI_NUMERICSERV))
 		return;
@@ -153,6 +149,8 @@ static bool is_same_host(const struct sockaddr_storage *here, const struct socka
 	struct sockaddr_in v4, peer4;
 	struct sockaddr_in6 v6, peer6;
 
+	if (here->ss_family != AF_INET && here->ss_family != AF_INET6)
+		return false;
 	if (here->ss_family == AF_INET) {
 		memcpy(&v4, here, sizeof(v4));
 		memcpy(&peer4, there, sizeof(peer4));
@@ -166,24 +164,33 @@ static bool is_same_host(const struct sockaddr_storage *here, const struct socka
 
 /*
  * Who is at the other end? -ECONNREFUSED: the socket itself, which happens with a port of this
- * machine without a listener. -EPERM: a program of this machine that is not trusted. Else 0.
+ * machine without a listener, or a program that does not listen any more. -EPERM: one that is not
+ * trusted. Else 0.
  */
 static int check_peer(struct connection *connection)
 {
 	struct sockaddr_storage here = {0}, there = {0};
 	socklen_t here_len = sizeof(here), there_len = sizeof(there);
 	uid_t user;
+	int err;
 
 	if (getsockname(connection->fd, (struct sockaddr *)&here, &here_len) ||
-	    getpeername(connection->fd, (struct sockaddr *)&there, &there_len) ||
-	    !is_same_host(&here, &there))
+	    getpeername(connection->fd, (struct sockaddr *)&there, &there_len))
+		return -errno;
+	if (!is_same_host(&here, &there))
 		return 0;
 	if (memcmp(&here, &there, here_len) == 0)
 		return -ECONNREFUSED;
-	if (listener_user("/proc/self/net", (struct sockaddr *)&there, &user) ||
-	    listener_is_trusted(user))
+	err = listener_user("/proc/self/net", (struct sockaddr *)&there, (struct sockaddr *)&here,
+	                    &user);
+	if (err == -ENOENT || (!err && listener_is_trusted(user)))
 		return 0;
-	connection->stranger = user;
+	if (err)
+		return err;
+	snprintf(connection->trouble, sizeof(connection->trouble),
+	         "%.36s: not believed, for the user %u serves it; a system user or root has to",
+	         connection->peer, (unsigned)user);
+	connection->stranger = true;
 	return -EPERM;
 }
 

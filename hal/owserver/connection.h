@@ -10,7 +10,6 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <sys/types.h>
 
 #include "hal/bus/bus.h"
 
@@ -24,7 +23,7 @@ struct connection {
 	struct addrinfo *list, *next; /* while connecting; next is tried after this one */
 	int64_t give_up_ns;           /* the present address is tried until then */
 	int last_err;                 /* why the last address failed */
-	uid_t stranger;               /* who serves it and is not trusted; 0: nobody */
+	bool stranger;                /* somebody who is not trusted serves one of them */
 	char peer[80];                /* "127.0.0.1:4304", once connected or tried */
 	char trouble[128];            /* why connecting failed, as a sentence */
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+/* Finds whose program is at the other end of a connection within this machine. */
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <netinet/in.h>
 #include <stdio.h>
@@ -11,95 +11,116 @@
 #include "hal/owserver/listener.h"
 
 #define LISTENS "0A"
-#define LINES 4096          /* the listeners stand first */
+#define LINES 16384         /* of a file at most; the listeners stand first */
 #define FIRST_PERSON 1000   /* UID_MIN of Debian; below: system users */
 #define FIRST_DYNAMIC 61184 /* DynamicUser of systemd */
 #define LAST_DYNAMIC 65519
 #define NOBODY 65534 /* in a user namespace: whoever has no number there */
+#define END_TEXT 38
 
-/* The forms of an address in these files, best first: itself, all addresses. */
-struct wanted {
-	const char *file;
-	char address[33];
+/* One of the fourth version is mapped. */
+struct end {
+	uint32_t words[4];
+	unsigned port;
 };
 
-static void print_v6(char *out, const uint32_t *words)
+enum { EXACT, ANY, NONE };
+
+struct found {
+	unsigned form; /* in which the address of the listener stands there */
+	uid_t listener, owner;
+	bool connected, taken, cut; /* taken: its program has the connection, and is of owner */
+};
+
+static void end_of(const struct sockaddr *at, struct end *end)
 {
-	snprintf(out, 33, "%08" PRIX32 "%08" PRIX32 "%08" PRIX32 "%08" PRIX32, words[0], words[1],
-	         words[2], words[3]);
+	struct sockaddr_in v4;
+	struct sockaddr_in6 v6;
+
+	*end = (struct end){.words = {0, 0, htonl(0xffff), 0}};
+	if (at->sa_family == AF_INET) {
+		memcpy(&v4, at, sizeof(v4));
+		end->words[3] = v4.sin_addr.s_addr;
+		end->port = ntohs(v4.sin_port);
+	} else {
+		memcpy(&v6, at, sizeof(v6));
+		memcpy(end->words, &v6.sin6_addr, sizeof(end->words));
+		end->port = ntohs(v6.sin6_port);
+	}
 }
 
-/* What may listen there, the most exact first, as the kernel picks it. Returns their number. */
-static int forms_of(const struct sockaddr *at, struct wanted *forms, unsigned *port)
+static bool is_v4(const struct end *end)
 {
-	const uint32_t any[4] = {0};
+	return !end->words[0] && !end->words[1] && end->words[2] == htonl(0xffff);
+}
+
+/* As tcp has it, or tcp6. */
+static void print_end(const struct end *end, bool v6, bool any, char text[END_TEXT])
+{
+	static const uint32_t none[4];
+	const uint32_t *words = any ? none : end->words;
+
+	if (v6)
+		snprintf(text, END_TEXT,
+		         "%08" PRIX32 "%08" PRIX32 "%08" PRIX32 "%08" PRIX32 ":%04X", words[0],
+		         words[1], words[2], words[3], end->port);
+	else
+		snprintf(text, END_TEXT, "%08" PRIX32 ":%04X", words[3], end->port);
+}
+
+/* One file, line by line: listeners come first, and with one of them the others are not needed. */
+static void look_in(const char *folder, bool v6, const struct end *at, const struct end *from,
+                    struct found *found)
+{
+	char path[256], line[512], forms[2][END_TEXT], client[END_TEXT];
+	FILE *file;
 	int n = 0;
 
-	if (at->sa_family == AF_INET) {
-		struct sockaddr_in v4;
-		uint32_t mapped[4] = {0, 0, htonl(0xffff)};
-
-		memcpy(&v4, at, sizeof(v4));
-		*port = ntohs(v4.sin_port);
-		mapped[3] = v4.sin_addr.s_addr;
-		forms[n].file = forms[n + 1].file = "tcp";
-		snprintf(forms[n++].address, 33, "%08" PRIX32, mapped[3]);
-		snprintf(forms[n++].address, 33, "%08X", 0U);
-		forms[n].file = "tcp6";
-		print_v6(forms[n++].address, mapped);
-	} else {
-		struct sockaddr_in6 v6;
-		uint32_t words[4];
-
-		memcpy(&v6, at, sizeof(v6));
-		memcpy(words, &v6.sin6_addr, sizeof(words));
-		*port = ntohs(v6.sin6_port);
-		forms[n].file = "tcp6";
-		print_v6(forms[n++].address, words);
-	}
-	forms[n].file = "tcp6";
-	print_v6(forms[n++].address, any);
-	return n;
-}
-
-/* One file, line by line, until its listeners end. Returns 0, or -ENOENT. */
-static int look_in(const char *folder, const struct wanted *form, unsigned port, uid_t *user)
-{
-	char path[256], line[512];
-	int found = -ENOENT;
-	FILE *file;
-
-	snprintf(path, sizeof(path), "%s/%s", folder, form->file);
+	print_end(at, v6, false, forms[EXACT]);
+	print_end(at, v6, true, forms[ANY]);
+	print_end(from, v6, false, client);
+	snprintf(path, sizeof(path), "%s/tcp%s", folder, v6 ? "6" : "");
 	file = fopen(path, "re");
-	if (!file)
-		return -ENOENT;
-	for (int n = 0; found && n < LINES && fgets(line, sizeof(line), file); n++) {
-		char address[33], its_port[5], state[3], uid[11];
+	for (; file && n < LINES && fgets(line, sizeof(line), file); n++) {
+		char here[END_TEXT], there[END_TEXT], state[3], uid[11], inode[21];
 
-		if (sscanf(line,
-		           " %*[0-9]: %32[0-9A-F]:%4[0-9A-F] %*s %2[0-9A-F] %*s %*s %*s %10[0-9]",
-		           address, its_port, state, uid) != 4)
+		if (sscanf(line, " %*[0-9]: %37s %37s %2s %*s %*s %*s %10[0-9] %*s %20[0-9]", here,
+		           there, state, uid, inode) != 5)
 			continue;
-		if (strcmp(state, LISTENS) != 0)
+		if (strcmp(state, LISTENS) == 0) {
+			for (unsigned form = 0; form < found->form; form++)
+				if (strcmp(here, forms[form]) == 0) {
+					found->form = form;
+					found->listener = (uid_t)strtoul(uid, NULL, 10);
+				}
+		} else if (found->form < NONE) {
 			break;
-		if (strtoul(its_port, NULL, 16) == port && strcmp(address, form->address) == 0) {
-			*user = (uid_t)strtoul(uid, NULL, 10);
-			found = 0;
+		} else if (strcmp(here, forms[EXACT]) == 0 && strcmp(there, client) == 0) {
+			found->connected = true;
+			found->taken = strcmp(inode, "0") != 0;
+			found->owner = (uid_t)strtoul(uid, NULL, 10);
 		}
 	}
-	fclose(file);
-	return found;
+	found->cut |= n == LINES;
+	if (file)
+		fclose(file);
 }
 
-int listener_user(const char *folder, const struct sockaddr *at, uid_t *user)
+int listener_user(const char *folder, const struct sockaddr *at, const struct sockaddr *from,
+                  uid_t *user)
 {
-	struct wanted forms[4];
-	unsigned port = 0;
-	int n = forms_of(at, forms, &port), err = -ENOENT;
+	struct found found = {.form = NONE};
+	struct end end, client;
 
-	for (int i = 0; i < n && err; i++)
-		err = look_in(folder, &forms[i], port, user);
-	return err;
+	end_of(at, &end);
+	end_of(from, &client);
+	if (is_v4(&end))
+		look_in(folder, false, &end, &client, &found);
+	look_in(folder, true, &end, &client, &found);
+	*user = found.form < NONE ? found.listener : found.owner;
+	if (found.form < NONE || found.taken)
+		return 0;
+	return found.cut || found.connected ? -ECONNREFUSED : -ENOENT;
 }
 
 bool listener_is_trusted(uid_t user)

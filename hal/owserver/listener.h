@@ -3,7 +3,7 @@
  * Whose program listens at an address of this machine. Any user may take a port above 1023 that is
  * free, as while an owserver starts again, and could answer with values of his own.
  *
- * Source: proc_net_tcp.txt of the kernel: local_address, st 0A, uid.
+ * Source: proc_net_tcp.txt of the kernel: local_address, rem_address, st 0A, uid, inode.
  */
 #pragma once
 
@@ -12,11 +12,14 @@
 #include <sys/types.h>
 
 /*
- * The user of the listener at this address and port, or of the one that listens at all addresses.
- * folder: "/proc/self/net", of which tcp and tcp6 are read; both answer at once. -ENOENT: nobody
- * known, as without /proc, or where another network namespace answers.
+ * The user of the listener at this address and port, or of the one that listens at all addresses;
+ * without a listener that of the program that has taken the connection from there.
+ * folder: "/proc/self/net", of which tcp and tcp6 are read; both answer at once. -ECONNREFUSED:
+ * nobody answers for the connection, or there are too many to see. -ENOENT: it does not end here,
+ * as where another network namespace answers; or there is no /proc.
  */
-int listener_user(const char *folder, const struct sockaddr *at, uid_t *user);
+int listener_user(const char *folder, const struct sockaddr *at, const struct sockaddr *from,
+                  uid_t *user);
 
 /*
  * May a program of this user answer for this machine's devices? So may root, system users, those

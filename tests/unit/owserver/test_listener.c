@@ -12,9 +12,10 @@
 #include "hal/owserver/listener.h"
 
 #define HEAD "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid\n"
-#define ROW(local, state, uid) \
-	"   0: " local " 00000000:0000 " state " 00000000:00000000 00:00000000 00000000 " uid \
-	"        0 35772704 1 0 100 0 0 10 0\n"
+#define FROM_TO(local, remote, state, uid, inode) \
+	"   0: " local " " remote " " state " 00000000:00000000 00:00000000 00000000 " uid \
+	"        0 " inode " 1 0 100 0 0 10 0\n"
+#define ROW(local, state, uid) FROM_TO(local, "00000000:0000", state, uid, "35772704")
 
 static char folder[] = "/tmp/listener.XXXXXX";
 
@@ -31,20 +32,29 @@ static void write_file(const char *name, const char *text)
 	TEST_ASSERT_EQUAL(0, fclose(file));
 }
 
-/* The port of all of them is 4304, 10D0. */
+static void make_address(const char *address, unsigned port, struct sockaddr_storage *at)
+{
+	struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+	struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port)};
+
+	if (inet_pton(AF_INET, address, &v4.sin_addr) == 1)
+		memcpy(at, &v4, sizeof(v4));
+	else if (inet_pton(AF_INET6, address, &v6.sin6_addr) == 1)
+		memcpy(at, &v6, sizeof(v6));
+	else
+		TEST_FAIL_MESSAGE(address);
+}
+
+/* The port of all of them is 4304, 10D0, and that of who asks 40000, 9C40. */
 static int user_at(const char *address)
 {
-	struct sockaddr_in v4 = {.sin_family = AF_INET, .sin_port = htons(4304)};
-	struct sockaddr_in6 v6 = {.sin6_family = AF_INET6, .sin6_port = htons(4304)};
+	struct sockaddr_storage at, from;
 	uid_t user = 0;
 	int err;
 
-	if (inet_pton(AF_INET, address, &v4.sin_addr) == 1)
-		err = listener_user(folder, (struct sockaddr *)&v4, &user);
-	else if (inet_pton(AF_INET6, address, &v6.sin6_addr) == 1)
-		err = listener_user(folder, (struct sockaddr *)&v6, &user);
-	else
-		return -EINVAL;
+	make_address(address, 4304, &at);
+	make_address(address, 40000, &from);
+	err = listener_user(folder, (struct sockaddr *)&at, (struct sockaddr *)&from, &user);
 	return err ? err : (int)user;
 }
 
@@ -97,7 +107,44 @@ static void test_a_listener_of_the_sixth_version_takes_the_fourth_too(void)
 	TEST_ASSERT_EQUAL(-ENOENT, user_at("127.0.0.1"));
 }
 
+static void test_a_mapped_address_is_that_of_the_fourth_version(void)
+{
+	write_file("tcp", ROW("0100007F:10D0", "0A", "1001"));
+	TEST_ASSERT_EQUAL(1001, user_at("::ffff:127.0.0.1"));
+}
+
+static void test_who_has_taken_the_connection_and_listens_no_more_counts(void)
+{
+	write_file("tcp",
+	           ROW("0100007F:1234", "0A", "5") FROM_TO("0100007F:10D0", "0100007F:9C41", "01",
+	                                                   "7", "12")
+	                   FROM_TO("0100007F:9C40", "0100007F:10D0", "01", "8", "13")
+	                           FROM_TO("0100007F:10D0", "0100007F:9C40", "01", "1001", "14"));
+	TEST_ASSERT_EQUAL(1001, user_at("127.0.0.1"));
+	/* a socket that has answered and is closed has no user any more */
+	write_file("tcp", FROM_TO("0100007F:10D0", "0100007F:9C40", "05", "0", "0"));
+	TEST_ASSERT_EQUAL(-ECONNREFUSED, user_at("127.0.0.1"));
+	write_file("tcp6", FROM_TO("00000000000000000000000001000000:10D0",
+	                           "00000000000000000000000001000000:9C40", "01", "1002", "15"));
+	TEST_ASSERT_EQUAL(1002, user_at("::1"));
+	/* nobody has taken it yet: who listens will */
+	write_file("tcp", ROW("0100007F:10D0", "0A", "6")
+	                          FROM_TO("0100007F:10D0", "0100007F:9C40", "01", "0", "0"));
+	TEST_ASSERT_EQUAL(6, user_at("127.0.0.1"));
+}
+
 #endif
+
+static void test_behind_too_many_sockets_nobody_is_believed(void)
+{
+	static char many[20000 * sizeof(ROW("0200007F:2222", "0A", "1001"))];
+	const char row[] = ROW("0200007F:2222", "0A", "1001");
+
+	for (size_t i = 0; i < 20000; i++)
+		memcpy(many + i * (sizeof(row) - 1), row, sizeof(row));
+	write_file("tcp", many);
+	TEST_ASSERT_EQUAL(-ECONNREFUSED, user_at("127.0.0.1"));
+}
 
 static void test_only_who_listens_counts(void)
 {
@@ -112,20 +159,29 @@ static void test_without_the_files_nobody_is_known(void)
 	TEST_ASSERT_EQUAL(-ENOENT, user_at("127.0.0.1"));
 }
 
-static void test_a_socket_of_this_program_is_its_users(void)
+static void test_a_connection_to_this_program_is_its_users_also_without_the_listener(void)
 {
-	struct sockaddr_in at = {.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}};
-	socklen_t len = sizeof(at);
-	int fd = socket(AF_INET, SOCK_STREAM, 0);
+	struct sockaddr_in at = {.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}}, from;
+	socklen_t len = sizeof(at), from_len = sizeof(from);
+	int fd = socket(AF_INET, SOCK_STREAM, 0), client = socket(AF_INET, SOCK_STREAM, 0), taken;
+	struct sockaddr *there = (struct sockaddr *)&at, *here = (struct sockaddr *)&from;
 	uid_t user = 12345;
 
-	TEST_ASSERT_EQUAL(0, bind(fd, (struct sockaddr *)&at, len));
+	TEST_ASSERT_EQUAL(0, bind(fd, there, len));
 	TEST_ASSERT_EQUAL(0, listen(fd, 1));
-	TEST_ASSERT_EQUAL(0, getsockname(fd, (struct sockaddr *)&at, &len));
-	TEST_ASSERT_EQUAL(0, listener_user("/proc/self/net", (struct sockaddr *)&at, &user));
+	TEST_ASSERT_EQUAL(0, getsockname(fd, there, &len));
+	TEST_ASSERT_EQUAL(0, connect(client, there, len));
+	TEST_ASSERT_EQUAL(0, getsockname(client, here, &from_len));
+	TEST_ASSERT_EQUAL(0, listener_user("/proc/self/net", there, here, &user));
 	TEST_ASSERT_EQUAL(geteuid(), user);
+	taken = accept(fd, NULL, NULL);
 	close(fd);
-	TEST_ASSERT_EQUAL(-ENOENT, listener_user("/proc/self/net", (struct sockaddr *)&at, &user));
+	user = 12345;
+	TEST_ASSERT_EQUAL(0, listener_user("/proc/self/net", there, here, &user));
+	TEST_ASSERT_EQUAL(geteuid(), user);
+	close(taken);
+	TEST_ASSERT_EQUAL(-ECONNREFUSED, listener_user("/proc/self/net", there, here, &user));
+	close(client);
 }
 
 static void test_people_are_not_trusted(void)
@@ -146,10 +202,13 @@ int main(void)
 	RUN_TEST(test_the_listener_at_the_address_has_its_user);
 	RUN_TEST(test_a_listener_at_all_addresses_counts_where_none_is_at_this_one);
 	RUN_TEST(test_a_listener_of_the_sixth_version_takes_the_fourth_too);
+	RUN_TEST(test_a_mapped_address_is_that_of_the_fourth_version);
+	RUN_TEST(test_who_has_taken_the_connection_and_listens_no_more_counts);
 #endif
 	RUN_TEST(test_only_who_listens_counts);
 	RUN_TEST(test_without_the_files_nobody_is_known);
-	RUN_TEST(test_a_socket_of_this_program_is_its_users);
+	RUN_TEST(test_behind_too_many_sockets_nobody_is_believed);
+	RUN_TEST(test_a_connection_to_this_program_is_its_users_also_without_the_listener);
 	RUN_TEST(test_people_are_not_trusted);
 	return UNITY_END();
 }
