@@ -6,13 +6,17 @@
 #include <string.h>
 
 #include "hal/base/rivals.h"
+#include "hal/base/time.h"
 #include "hal/bus/tap.h"
 #include "hal/ds2482/detect.h"
 #include "hal/ds2482/ds2482.h"
+#include "hal/ds2482/io.h"
 #include "hal/ds2482/link.h"
 #include "hal/ds2482/master.h"
 #include "hal/ds2482/power.h"
 #include "hal/ds2482/select.h"
+
+#define END_NS (5 * NS_PER_MS) /* a byte or a reset has ended by then */
 
 static int parse_where(struct ds2482_master *master, const char *where, char *why, size_t why_size)
 {
@@ -52,16 +56,25 @@ void ds2482_cost(const struct link_master *base, struct link_master_cost *cost)
 	cost->syscalls += master->adapter->syscalls;
 }
 
+/* Nobody else would end a strong pull-up. A shutdown ends waits, and a busy chip takes nothing. */
+static void leave_chip(struct ds2482_chip *chip)
+{
+	if (!(chip->config & DS2482_SPU) || !ds2482_claimed(chip) || chip->lost)
+		return;
+	if (ds2482_wait(chip->master, END_NS))
+		clock_pause(END_NS);
+	chip->free_at = 0;
+	(void)ds2482_end_strong(chip);
+}
+
 static void close_adapter(struct ds2482_master *master)
 {
 	struct i2c_adapter *adapter = master->adapter;
 
 	if (!adapter)
 		return;
-	/* nobody else would end a strong pull-up */
 	for (unsigned i = 0; i < master->count; i++)
-		if (ds2482_claimed(&master->chip[i]) && !master->chip[i].lost)
-			(void)ds2482_end_strong(&master->chip[i]);
+		leave_chip(&master->chip[i]);
 	ds2482_cost(&master->master, &master->cost);
 	master->adapter = NULL;
 	adapter->ops->close(adapter);

@@ -164,6 +164,37 @@ static void test_the_strong_pullup_ends_with_the_adapter_also_at_a_shutdown(void
 	}
 }
 
+static int (*whole_wait)(void *ctx, int fd, short events, int64_t until_ns);
+static unsigned waits_left;
+
+static int wait_until_shutdown(void *ctx, int fd, short events, int64_t until_ns)
+{
+	ds.host.shutdown = !waits_left;
+	waits_left -= waits_left > 0;
+	return whole_wait(ctx, fd, events, until_ns);
+}
+
+/* The chip may be busy then, and nobody waits for it. */
+static void test_the_strong_pullup_ends_with_the_adapter_whenever_the_shutdown_comes(void)
+{
+	for (unsigned i = 0; i < DS_KINDS; i++)
+		for (unsigned waits = 0; waits < 6; waits++) {
+			host_init_real(&ds.host);
+			whole_wait = ds.host.env.wait;
+			ds_start(ds_kinds[i]);
+			TEST_ASSERT_EQUAL_INT(1, part_reset(ds.wire));
+			ds.host.env.wait = wait_until_shutdown;
+			waits_left = waits;
+			(void)link_slot(ds.wire, true, LINK_STRONG);
+			waits_left = 0;
+			ds.master->ops->close(ds.master);
+			sim_net_run(&ds.net, host_now(&ds.host) + HOST_MS);
+			TEST_ASSERT_FALSE_MESSAGE(ds.net.chip[0].wire[0].strong, ds_kinds[i]);
+			tearDown();
+			setUp();
+		}
+}
+
 static void test_each_channel_of_an_800_is_its_own_wire(void)
 {
 	ds_start("chip DS2482-800 0x1a\nchannel 0\nDS2401 01.000000000001\n"
@@ -254,6 +285,7 @@ int main(void)
 	RUN_TEST(test_triplets_and_bits_read_the_wire);
 	RUN_TEST(test_the_strong_pullup_feeds_a_parasite_until_the_next_call);
 	RUN_TEST(test_the_strong_pullup_ends_with_the_adapter_also_at_a_shutdown);
+	RUN_TEST(test_the_strong_pullup_ends_with_the_adapter_whenever_the_shutdown_comes);
 	RUN_TEST(test_each_channel_of_an_800_is_its_own_wire);
 	RUN_TEST(test_one_chip_or_one_channel_is_opened_when_it_is_named);
 	RUN_TEST(test_a_where_that_is_none_is_refused);
