@@ -274,12 +274,36 @@ def test_outputs_are_commanded_as_signals_and_by_their_paths(scene):
     assert ask(port, WRITE, "/signals/nobody", b"7")[0] == -1
 
 
-def test_what_a_client_writes_over_an_output_is_written_over_again(scene):
+def test_a_write_that_would_change_an_output_by_another_property_is_refused(scene):
+    """Before, it was a success, and owsd undid it at once."""
     daemon, port = house(scene)
+    relay = "/29.000000000001/PIO"
     assert ask(port, WRITE, "/signals/pump", b"1")[0] == 0
-    assert ask(port, WRITE, "/29.000000000001/PIO.BYTE", b"0")[0] == 0
-    until(lambda: value(ask(port, READ, "/uncached/29.000000000001/PIO.1")) == "1", 5)
-    until(lambda: scene.get(daemon, "pump") == "1", 5, "it is as it was commanded")
+    for path in (".BYTE", ".ALL"):
+        text = b"0" if path == ".BYTE" else b"0,0,0,0,0,0,0,0"
+        for before in ("", "/uncached", "/bus.0"):
+            assert ask(port, WRITE, before + relay + path, text)[0] == -30, (before, path)
+    owsdtest.logged(daemon, f"to what the output light ({relay}.0) sets")
+    assert value(ask(port, READ, f"/uncached{relay}.1")) == "1"
+    assert ask(port, WRITE, relay + ".5", b"1")[0] == 0, "no output has this pin"
+    assert value(ask(port, READ, f"/uncached{relay}.5")) == "1"
+    assert stat(scene, daemon, "served_refused_writes") == 6
+
+
+def test_a_pin_of_an_output_of_all_pins_is_refused_to_clients(scene):
+    both, pair = "/29.000000000001/PIO", "/3A.000000000001/PIO"
+    house = scene.file("house.sim", "chip DS2482-100 0x18\nDS2408 29.000000000001\nDS2413 3A.000000000001\n")
+    daemon, port = served(scene, owsdtest.rio(f"sim:{house}", [
+        dict(Name="relays", Path=both + ".BYTE", Type="byte", IO="output", InitValue=5),
+        dict(Name="pair", Path=pair + ".BYTE", Type="byte", IO="output", InitValue=1)]))
+    until(lambda: scene.get(daemon, "relays") == "5", 10)
+    for path, text in ((both + ".1", b"1"), (both + ".ALL", b"1,1,1,1,1,1,1,1"), (pair + ".A", b"0"),
+                       (pair + ".ALL", b"0,0")):
+        assert ask(port, WRITE, path, text)[0] == -30, path
+    assert ask(port, WRITE, both, b"1")[0] == -1, "no such property"
+    asked = scene.owsctl(daemon, "write", both + ".1", "1")
+    assert asked.returncode == 1 and "owsctl set relays" in asked.stderr, asked
+    assert value(ask(port, READ, "/uncached" + both + ".BYTE")).strip() == "5"
 
 
 def test_inputs_are_answered_from_the_table(scene):

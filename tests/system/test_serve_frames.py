@@ -13,6 +13,7 @@ from served import (ABSENT, ALIAS, BATTERY, BUS_LIST, DIR, DIRALL, DIRALLSLASH, 
                     TRIM, UNCACHED, USUAL, WRITE, Closed)
 
 T = THERMOMETER
+PINS = "/3A.C99A66320DB7"
 
 
 class Pair:
@@ -88,7 +89,7 @@ def test_texts_and_numbers(scene):
     for path in (T + "/temperature12", T + "/power", BATTERY + "/temperature", SWITCH + "/PIO.ALL",
                  SWITCH + "/PIO.BYTE", SWITCH + "/sensed.3", SWITCH + "/set_alarm", "/uncached" + T +
                  "/temperature", "/20.051758E95ED4/volt.ALL", "/1D.3158A35A255D/counters.ALL",
-                 "/12.765A2E63339F/PIO.ALL", "/3A.C99A66320DB7/sensed.BYTE"):
+                 "/12.765A2E63339F/PIO.ALL", PINS + "/sensed.BYTE"):
         pair.alike(READ, path)
     pair.alike(READ, T + "/temperature", flags=USUAL | UNCACHED)
     for scale in range(4):
@@ -145,8 +146,9 @@ def test_writes(scene):
             (T + "/templow", ("10", "abc", "", " 11", "12 ", "-3")),
             (T + "/nonsense", ("10",)), (ABSENT + "/templow", ("10",)), (T, ("10",)),
             (SWITCH + "/PIO.BYTE", ("255", "99999999999999999999999", "0")),
-            (SWITCH + "/PIO.0", ("1", "yes", "on", "maybe", "0", "no")),
-            (SWITCH + "/PIO.ALL", ("1,0,1,0,1,0,1,0", "1,0,1", "1", "0,0,0,0,0,0,0,0")),
+            # of a chip that is no output of the table
+            (PINS + "/PIO.A", ("1", "yes", "on", "maybe", "0", "no")),
+            (PINS + "/PIO.ALL", ("1,0", "1", "0,0")),
             (SWITCH + "/PIO", ("1",)), (SWITCH + "/sensed.BYTE", ("1",)),
             (SWITCH + "/latch.BYTE", ("1",)), (SWITCH + "/set_alarm", ("111111111", "0")),
             (T + "/alias", ("bus.0", "a/b", "boiler", "")), ("/simultaneous/temperature", ("1", "0")),
@@ -156,7 +158,7 @@ def test_writes(scene):
             pair.same(WRITE, path, data=text.encode())
     # the end of a line or of a string is none of a value, and blanks before it are not of an alias
     for path, value in ((T + "/alias", b"  kitchen"), (T + "/templow", b"1"),
-                        (SWITCH + "/PIO.0", b"1"), ("/settings/units/pressure_scale", b"mbar"),
+                        (PINS + "/PIO.A", b"1"), ("/settings/units/pressure_scale", b"mbar"),
                         ("/settings/timeout/ftp", b"1")):
         for end in (b"\0", b"\r\n", b" "):
             pair.same(WRITE, path, data=value + end)
@@ -165,7 +167,8 @@ def test_writes(scene):
     pair.same(WRITE, MEMORY + "/pages/page.0", data=b"hello")
     pair.judge(40)
     # What is no value of its property is refused, where owserver takes its beginning, or any bit of it
-    for path, text in ((T + "/templow", b"12abc"), (SWITCH + "/PIO.0", b"7")):
+    for path, text in ((T + "/templow", b"12abc"), (PINS + "/PIO.A", b"7"),
+                       (PINS + "/PIO.ALL", b"1,0,1")):
         assert pair.genuine.frame(WRITE, path, data=text).ret == 0
         assert pair.ours.frame(WRITE, path, data=text).ret == -22
     # A number that does not fit is refused, and not cut to its lowest byte

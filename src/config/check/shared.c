@@ -13,31 +13,29 @@
 #define PARTNERS 64
 
 struct output {
-	uint64_t where; /* a hash of the device and of what holds the command */
 	const struct config_item *item;
-	const char *element; /* "3", "A", "BYTE"; "": all of it */
+	struct shared_bits bits;
 };
 
-static bool find_output(const struct config_item *item, struct output *output)
+bool shared_bits(const char *text, struct shared_bits *bits)
 {
-	struct path_property property = property_look(item->path);
-	const char *dot = strrchr(item->path, '.');
+	struct path_property property = property_look(text);
+	const char *dot = strrchr(text, '.');
 	const char *held = property.held;
 	struct path path;
 	size_t len;
 
-	if (!config_item_takes_sets(item) || path_split(item->path, strlen(item->path), &path) ||
-	    !path.device.len)
+	if (!property.exists || path_split(text, strlen(text), &path) || !path.device.len ||
+	    !path.property.len)
 		return false;
 	if (dot && dot < path.property.text)
 		dot = NULL;
 	len = dot ? (size_t)(dot - path.property.text) : path.property.len;
-	output->item = item;
-	output->element = dot ? dot + 1 : "";
-	output->where = path.has_rom ? hash_text(HASH_BEGIN, (const char *)path.rom, ROM_LEN)
-	                             : hash_text(HASH_BEGIN, path.device.text, path.device.len);
-	output->where = *held ? hash_text(output->where, held, strlen(held))
-	                      : hash_text(output->where, path.property.text, len);
+	bits->element = dot ? dot + 1 : "";
+	bits->where = path.has_rom ? hash_text(HASH_BEGIN, (const char *)path.rom, ROM_LEN)
+	                           : hash_text(HASH_BEGIN, path.device.text, path.device.len);
+	bits->where = *held ? hash_text(bits->where, held, strlen(held))
+	                    : hash_text(bits->where, path.property.text, len);
 	return true;
 }
 
@@ -45,8 +43,8 @@ static int compare(const void *a, const void *b)
 {
 	const struct output *x = a, *y = b;
 
-	if (x->where != y->where)
-		return x->where < y->where ? -1 : 1;
+	if (x->bits.where != y->bits.where)
+		return x->bits.where < y->bits.where ? -1 : 1;
 	return (x->item > y->item) - (x->item < y->item);
 }
 
@@ -55,19 +53,20 @@ static bool is_whole_register(const char *element)
 	return !*element || !strcmp(element, "BYTE") || !strcmp(element, "ALL");
 }
 
-static bool overlap(const struct output *a, const struct output *b)
+bool shared_overlap(const struct shared_bits *a, const struct shared_bits *b)
 {
-	return is_whole_register(a->element) || is_whole_register(b->element) ||
-	       !strcmp(a->element, b->element);
+	return a->where == b->where &&
+	       (is_whole_register(a->element) || is_whole_register(b->element) ||
+	        !strcmp(a->element, b->element));
 }
 
 /* The nearest output before n that sets bits of it too; NULL: none. */
 static const struct config_item *opponent(const struct output *outputs, unsigned n)
 {
 	for (unsigned i = n; i > 0 && n - i < PARTNERS; i--) {
-		if (outputs[i - 1].where != outputs[n].where)
+		if (outputs[i - 1].bits.where != outputs[n].bits.where)
 			break;
-		if (overlap(&outputs[i - 1], &outputs[n]))
+		if (shared_overlap(&outputs[i - 1].bits, &outputs[n].bits))
 			return outputs[i - 1].item;
 	}
 	return NULL;
@@ -83,8 +82,11 @@ void shared_check(const struct config *config, const char *name, struct config_r
 	struct output *outputs = calloc(config->item_count + 1, sizeof(*outputs));
 	unsigned count = 0;
 
-	for (unsigned i = 0; outputs && i < config->item_count; i++)
-		count += find_output(&config->items[i], &outputs[count]);
+	for (unsigned i = 0; outputs && i < config->item_count; i++) {
+		outputs[count].item = &config->items[i];
+		count += config_item_takes_sets(&config->items[i]) &&
+		         shared_bits(config->items[i].path, &outputs[count].bits);
+	}
 	if (outputs)
 		qsort(outputs, count, sizeof(*outputs), compare);
 	for (unsigned i = 0; i < count; i++) {

@@ -6,6 +6,7 @@
 
 #include "hal/base/time.h"
 #include "hal/chips/format.h"
+#include "src/config/check/shared.h"
 #include "src/daemon/serve/kept.h"
 #include "src/ground/signal/hash.h"
 #include "src/ground/signal/value.h"
@@ -31,6 +32,11 @@ struct kept {
 	const struct config *config;
 	uint32_t *index; /* hash of paths: index of the item + 1 */
 	uint32_t index_size;
+	struct output {
+		struct shared_bits bits;
+		uint32_t record;
+	} * outputs;
+	uint32_t output_count;
 	struct entry entries[SETS * WAYS];
 	/* When a client wrote last: to a device, by the hash of its id; behind them: to any. */
 	int64_t written_ns[WRITTEN + 1];
@@ -45,9 +51,13 @@ static bool canonical(const char *path, struct node *node)
 
 static void index_item(struct kept *kept, uint32_t item)
 {
+	struct output *output = &kept->outputs[kept->output_count];
 	struct node node;
 	uint32_t at;
 
+	output->record = item + 1;
+	kept->output_count += kept->config->items[item].output &&
+	                      shared_bits(kept->config->items[item].path, &output->bits);
 	if (!canonical(kept->config->items[item].path, &node))
 		return;
 	at = hash_text(HASH_BEGIN, node.path, strlen(node.path));
@@ -65,8 +75,9 @@ struct kept *kept_create(const struct config *config)
 	kept->config = config;
 	kept->index_size = 2 * config->item_count + 1;
 	kept->index = calloc(kept->index_size, sizeof(*kept->index));
-	if (!kept->index) {
-		free(kept);
+	kept->outputs = calloc(config->item_count + 1, sizeof(*kept->outputs));
+	if (!kept->index || !kept->outputs) {
+		kept_destroy(kept);
 		return NULL;
 	}
 	for (uint32_t i = 0; i < config->item_count; i++)
@@ -78,6 +89,7 @@ void kept_destroy(struct kept *kept)
 {
 	if (!kept)
 		return;
+	free(kept->outputs);
 	free(kept->index);
 	free(kept);
 }
@@ -98,6 +110,18 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 		    (canonical(item->path, &node) && strcmp(node.path, path) == 0))
 			return (int)slot;
 	}
+	return -1;
+}
+
+int kept_changes(const struct kept *kept, const char *path)
+{
+	struct shared_bits bits;
+
+	if (!shared_bits(path, &bits))
+		return -1;
+	for (uint32_t i = 0; i < kept->output_count; i++)
+		if (shared_overlap(&kept->outputs[i].bits, &bits))
+			return (int)kept->outputs[i].record;
 	return -1;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* WRITE: to a device, to all targets, or as a command to the table. */
 #include <errno.h>
+#include <stdio.h>
 
 #include "src/daemon/serve/answer.h"
 #include "src/daemon/serve/client.h"
@@ -133,6 +134,28 @@ static void work_write_refuse(struct serve *s, struct client *c)
 	answer_error(s, c, -EROFS);
 }
 
+/*
+ * Would the write change an output of the table by another property, as PIO.BYTE does PIO.1? owsd
+ * would undo it at once.
+ */
+static bool changes_output(struct serve *s, struct client *c)
+{
+	char reason[PATH_LEN_MAX + OWS_NAME + 256], person[OWS_NAME];
+	int record = kept_changes(s->kept, c->node.path);
+	const struct config_item *item;
+
+	if (record < 0)
+		return false;
+	item = &s->config->items[record - 1];
+	person_name(c->fd, c->network, &c->peer, person);
+	snprintf(reason, sizeof(reason),
+	         "a write of %s to what the output %s (%s) sets: command that output", person,
+	         item->name, item->path);
+	client_refused(s, COUNT_refused_writes, &s->error_rate, reason);
+	answer_error(s, c, -EROFS);
+	return true;
+}
+
 void work_write(struct serve *s, struct client *c)
 {
 	const struct node *node = &c->node;
@@ -161,7 +184,7 @@ void work_write(struct serve *s, struct client *c)
 			answer_error(s, c, -EINVAL);
 		else if (name)
 			work_write_command(s, c);
-		else if (!work_ask_type(s, c))
+		else if (!changes_output(s, c) && !work_ask_type(s, c))
 			work_write_target(s, c);
 	}
 }

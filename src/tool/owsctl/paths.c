@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/config/check/shared.h"
 #include "src/faces/show/json.h"
 #include "src/faces/show/text.h"
 #include "src/tool/owsctl/open.h"
@@ -157,6 +158,27 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
+/* owsd refused the write: name the output that sets the same bits. False: it is for another reason. */
+static bool name_output(const struct ctl *ctl, const struct served *served, const char *path)
+{
+	struct shared_bits bits, other;
+	struct ows_info info;
+	bool found = false;
+	struct ows *h;
+
+	if (ctl->target || !served->target[0] || !shared_bits(path, &bits) ||
+	    ows_open(ctl->instance, OWS_READ, &h) != 0)
+		return false;
+	for (int i = 0; !found && ows_info(h, i, &info) == 0; i++)
+		found = info.output && shared_bits(info.path, &other) &&
+		        shared_overlap(&bits, &other);
+	if (found)
+		ctl_fail("%s: the output %s sets the same bits: owsctl set %s VALUE", path,
+		         info.name, info.name);
+	ows_close(h);
+	return found;
+}
+
 int verb_write(struct ctl *ctl, int argc, char **argv)
 {
 	int64_t timeout_ns = OPEN_TIMEOUT_NS;
@@ -180,8 +202,11 @@ int verb_write(struct ctl *ctl, int argc, char **argv)
 	ask.req.data = (uint8_t *)argv[optind + 1];
 	ask.req.len = (uint32_t)strlen(argv[optind + 1]);
 	if (target_ask_one(&target, &ask))
-		status = ctl_fail("%s: %s%s", argv[optind], error_words(ask.answer.err, words),
-		                  open_asked(ctl, &target, &served));
+		status = ask.answer.err == -EPERM && name_output(ctl, &served, path)
+		                 ? CTL_FAILED
+		                 : ctl_fail("%s: %s%s", argv[optind],
+		                            error_words(ask.answer.err, words),
+		                            open_asked(ctl, &target, &served));
 	target_close(&target);
 	return status;
 }
