@@ -3,6 +3,7 @@
 #include "src/daemon/engine/schedule.h"
 #include "hal/base/time.h"
 #include "src/daemon/engine/alarm/alarm_item.h"
+#include "src/daemon/engine/command/origin.h"
 #include "src/daemon/engine/due.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
@@ -96,6 +97,8 @@ void engine_row_due(struct engine *e, struct signal *s, enum row_wait wait)
 {
 	if (wait == WAIT_TIME)
 		engine_publish(e, s);
+	else if (wait == WAIT_JOURNAL)
+		engine_origin_rest(e, s);
 	else if (wait == WAIT_WRITE)
 		engine_write_check(e, s);
 	else if (signal_is_read(s))

@@ -350,11 +350,12 @@ static inline uint32_t engine_row(const struct signal *s)
 	return s->record - 1;
 }
 
-/* What waits in the wheel: three entries for each row, and two behind them for each device. */
+/* What waits in the wheel: four entries for each row, and two behind them for each device. */
 enum row_wait {
 	WAIT_READ,
 	WAIT_WRITE,
-	WAIT_TIME, /* it changes by time alone: limit alarms, StaleAfter */
+	WAIT_TIME,    /* it changes by time alone: limit alarms, StaleAfter */
+	WAIT_JOURNAL, /* the journal gets the last command */
 	ROW_WAITS
 };
 enum device_wait { WAIT_WATCH, WAIT_ROUTE, DEVICE_WAITS };

@@ -148,8 +148,52 @@ static void test_a_controller_that_commands_without_end_has_an_entry_a_second(vo
 	for (int i = 0; i < 100; i++)
 		set(0, 1, i & 255);
 	TEST_ASSERT_UINT_WITHIN(1, 10, entered() - before);
-	TEST_ASSERT_EQUAL_UINT32(9, entry(0)->more);
-	TEST_ASSERT_EQUAL_UINT32(0, entry(9)->more);
+	TEST_ASSERT_UINT_WITHIN(1, 9, entry(0)->more);
+	TEST_ASSERT_EQUAL_UINT32(0, entry(entered() - before - 1)->more);
+}
+
+static void test_the_last_command_of_a_second_is_entered_when_the_second_is_over(void)
+{
+	uint32_t before;
+	int64_t last_ns;
+
+	set(0, 1, 5);
+	set(0, 1, 6);
+	before = entered();
+	last_ns = s.now_ns;
+	set(0, 1, 0);
+	TEST_ASSERT_EQUAL_UINT32(before, entered());
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(before + 1, entered());
+	TEST_ASSERT_EQUAL_HEX8(OWS_JOURNAL_AFTER, entry(0)->flags);
+	TEST_ASSERT_EQUAL_INT64(0, entry(0)->after);
+	TEST_ASSERT_EQUAL_INT64(last_ns, entry(0)->occurred_ns);
+	TEST_ASSERT_EQUAL_UINT32(1, entry(0)->more);
+	TEST_ASSERT_EQUAL_STRING("controller0", entry(0)->who.name);
+	scene_run(&s, 60 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(before + 1, entered());
+}
+
+static void test_so_is_the_last_text_and_the_last_of_those_who_fight_over_a_reload_too(void)
+{
+	uint32_t before;
+
+	scene_set_text(&s, 3, "boiler");
+	scene_run(&s, 100 * SCENE_MS);
+	scene_set_text(&s, 3, "pump");
+	scene_run(&s, 100 * SCENE_MS);
+	scene_join(&s, 1, 2);
+	for (int i = 0; i < 31; i++)
+		set(i & 1, 1, i);
+	before = entered();
+	scene_reload(&s, NULL);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(before + 1, entered());
+	TEST_ASSERT_EQUAL_INT64(30, entry(0)->after);
+	TEST_ASSERT_EQUAL_STRING("controller0", entry(0)->who.name);
+	for (uint32_t i = 0; i < entered(); i++)
+		before -= entry(i)->record == 3 && !strcmp(entry(i)->text, "pump");
+	TEST_ASSERT_EQUAL_UINT32(entered() - 2, before);
 }
 
 static void test_another_controller_is_an_entry_at_once_and_what_was_before_it_is_not_lost(void)
@@ -340,6 +384,8 @@ int main(void)
 	RUN_TEST(test_the_journal_has_the_values_before_and_after);
 	RUN_TEST(test_the_same_value_again_is_no_entry);
 	RUN_TEST(test_a_controller_that_commands_without_end_has_an_entry_a_second);
+	RUN_TEST(test_the_last_command_of_a_second_is_entered_when_the_second_is_over);
+	RUN_TEST(test_so_is_the_last_text_and_the_last_of_those_who_fight_over_a_reload_too);
 	RUN_TEST(test_another_controller_is_an_entry_at_once_and_what_was_before_it_is_not_lost);
 	RUN_TEST(test_controllers_that_fight_over_an_output_do_not_flush_the_journal);
 	RUN_TEST(test_safevalue_names_the_controller_that_is_lost);

@@ -28,11 +28,12 @@ struct origin_before origin_before(const struct signal *s, int64_t value, const 
 }
 
 static void enter_command(struct engine *e, const struct signal *s, enum ows_reason reason,
-                          const struct ows_who *who, const struct origin_before *before)
+                          const struct ows_who *who, const struct origin_before *before,
+                          int64_t occurred_ns)
 {
 	struct ows_journal_entry entry = {
 		.record = s->record,
-		.occurred_ns = e->time.now_ns,
+		.occurred_ns = occurred_ns,
 		.kind = (uint8_t)reason,
 		.quality = s->sample.quality,
 		.more = s->journal.more,
@@ -94,11 +95,12 @@ static void journal_command(struct engine *e, struct signal *s, enum ows_reason 
 	if ((same && e->time.now_ns - s->journal.entered_ns < APART_NS) ||
 	    (reason == OWS_REASON_SET && !has_room(s, e->time.now_ns))) {
 		s->journal.more++;
+		engine_origin_wait(e, s);
 		return;
 	}
 	if (!same && s->journal.more)
 		enter_rest(e, s, before);
-	enter_command(e, s, reason, who, before);
+	enter_command(e, s, reason, who, before, e->time.now_ns);
 	s->journal.entered_ns = e->time.now_ns;
 	s->journal.serial = who->serial;
 	s->journal.reason = (uint32_t)reason;
@@ -119,6 +121,35 @@ void engine_origin(struct engine *e, struct signal *s, enum ows_reason reason,
 	image_origin(e->image, s->record, &entry);
 }
 
+void engine_origin_wait(struct engine *e, const struct signal *s)
+{
+	int64_t at_ns = s->journal.entered_ns + APART_NS,
+		room_ns = s->journal.until_ns - (AT_ONCE - 1) * APART_NS;
+
+	if (s->journal.more)
+		due_wheel_at(&e->wheel, engine_row_wait(s, WAIT_JOURNAL),
+		             engine_period_at(e, at_ns > room_ns ? at_ns : room_ns));
+}
+
+void engine_origin_rest(struct engine *e, struct signal *s)
+{
+	const struct ows_origin_entry *last = &e->image->origins[s->record];
+	const struct origin_before before = {0};
+
+	if (!s->journal.more)
+		return;
+	if (!has_room(s, e->time.now_ns)) {
+		engine_origin_wait(e, s);
+		return;
+	}
+	s->journal.more--;
+	enter_command(e, s, (enum ows_reason)last->reason, &last->who, &before, last->taken_ns);
+	s->journal = (struct signal_journal){.entered_ns = e->time.now_ns,
+	                                     .until_ns = s->journal.until_ns,
+	                                     .serial = last->who.serial,
+	                                     .reason = last->reason};
+}
+
 void engine_origin_carry(struct engine *e, const struct signal *s, const struct engine *old,
                          uint32_t record)
 {
@@ -134,6 +165,6 @@ void engine_origin_begin(struct engine *e, struct signal *s)
 		return;
 	entry.taken_ns = e->time.now_ns;
 	s->journal = (struct signal_journal){.reason = entry.reason, .entered_ns = entry.taken_ns};
-	enter_command(e, s, (enum ows_reason)entry.reason, &entry.who, &before);
+	enter_command(e, s, (enum ows_reason)entry.reason, &entry.who, &before, entry.taken_ns);
 	image_origin(e->image, s->record, &entry);
 }

@@ -15,6 +15,12 @@ struct origin_before origin_before(const struct signal *s, int64_t value, const 
 /* The command in force of s is new: of this controller, for this reason. */
 void engine_origin(struct engine *e, struct signal *s, enum ows_reason reason,
                    const struct ows_who *who, const struct origin_before *before);
+/*
+ * Enter the last command, which was not entered as it came: until now the journal had enough of the
+ * signal. A reload: wait for that as before.
+ */
+void engine_origin_rest(struct engine *e, struct signal *s);
+void engine_origin_wait(struct engine *e, const struct signal *s);
 /* A reload: the origin of what was command record was before. */
 void engine_origin_carry(struct engine *e, const struct signal *s, const struct engine *old,
                          uint32_t record);

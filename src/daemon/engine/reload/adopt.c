@@ -247,6 +247,7 @@ static void take_schedule(struct engine *e, struct signal *s, const struct engin
 		engine_write_at(e, s, write);
 	else
 		engine_write_check(e, s);
+	engine_origin_wait(e, s);
 }
 
 static void take_signals(struct engine *e, const struct engine *old, const struct adoption *plan)
