@@ -111,7 +111,7 @@ struct client {
 	X(full)           /* connections that had to wait for a place */ \
 	X(not_kept)       /* connections closed after an answer, because others waited */ \
 	X(refused_peers)  /* peers that are not in ListenAllow */ \
-	X(refused_writes) /* writes refused in read-only mode, by ControlAllow, too old, beside an output */ \
+	X(refused_writes) /* writes refused: read-only, ControlAllow, too old, beside an output */ \
 	X(came_round)     /* requests that came here before, by way of other servers */ \
 	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* connections closed at once: the kernel lacked something */ \

@@ -158,7 +158,7 @@ int verb_read(struct ctl *ctl, int argc, char **argv)
 	return status;
 }
 
-/* owsd refused the write: name the output that sets the same bits. False: it is for another reason. */
+/* owsd refused a write: name the output that sets the same bits. False: for another reason. */
 static bool name_output(const struct ctl *ctl, const struct served *served, const char *path)
 {
 	struct shared_bits bits, other;
