@@ -11,6 +11,7 @@
 #include "src/faces/mqtt/stream.h"
 #include "src/ground/signal/hash.h"
 #include "src/ground/signal/value.h"
+#include "src/ground/text/printable.h"
 
 #define UNDER_WAY_NS (10 * NS_PER_S) /* a command is written by then, or it failed */
 
@@ -39,8 +40,7 @@ void commands_refuse(struct commands *c, const char *name, const char *why, int6
 	char claim[64];
 
 	snprintf(claim, sizeof(claim), "%s", name);
-	for (char *quote = claim; (quote = strchr(quote, '"'));)
-		*quote = '\'';
+	printable_quoted(claim);
 	commands_tell(c, now_ns);
 	c->refused++;
 	snprintf(c->why, sizeof(c->why), "%s", why);

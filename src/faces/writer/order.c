@@ -61,6 +61,8 @@ static const char *parse_person(struct word value, struct order *order)
 		return "for: longer than 63 bytes";
 	memcpy(order->person, value.at, value.len);
 	order->person[printable(order->person, value.len)] = '\0';
+	/* the log has it in quotes */
+	printable_quoted(order->person);
 	return NULL;
 }
 

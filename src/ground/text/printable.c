@@ -27,6 +27,12 @@ size_t printable(char *text, size_t len)
 	return to;
 }
 
+void printable_quoted(char *text)
+{
+	while ((text = strchr(text, '"')))
+		*text = '\'';
+}
+
 size_t printable_cut(const char *text, size_t most)
 {
 	size_t len = strnlen(text, most), start = len;

@@ -12,6 +12,9 @@
  */
 size_t printable(char *text, size_t len);
 
+/* Make text fit to stand in quotes, in place: its own become '. */
+void printable_quoted(char *text);
+
 /* The length of text, at most that many bytes, without a UTF-8 character that is cut there. */
 size_t printable_cut(const char *text, size_t most);
 

@@ -117,6 +117,8 @@ static void test_a_person_is_printable_and_not_too_long(void)
 	                         "an?",
 	                         order.person);
 	refuses(FIRST "for: a\tb\n\n", "control character");
+	TEST_ASSERT_GREATER_THAN(0, parse(FIRST "do:restore\nbase:\nfor: x\": done by \"y\n\n"));
+	TEST_ASSERT_EQUAL_STRING("x': done by 'y", order.person);
 	memset(name, 'n', sizeof(name));
 	name[63] = '\0';
 	snprintf(text, sizeof(text), FIRST "do:restore\nbase:\nfor:%s\n\n", name);
