@@ -157,7 +157,8 @@ static void check_listen(struct doctor *d)
 		if (!listen_is_here(&at))
 			listen_why(&serve->addresses[i], -EADDRNOTAVAIL, why);
 	}
-	report_add(&d->found, BOARD_MISSING, "owsd is not reached at all of Listen: %s", why);
+	report_add(&d->found, BOARD_MISSING, "owsd is not reached at each address of Listen: %s",
+	           why);
 	report_remedy(&d->found, "%s", listen_remedy(-EADDRNOTAVAIL) + strlen("; "));
 }
 
