@@ -91,16 +91,10 @@ int rivals_hidden(const char *proc, char *text, size_t size)
 	for (struct dirent *entry; dir && !found && (entry = readdir(dir));) {
 		int pid = (int)strtol(entry->d_name, NULL, 10);
 		char name[17], path[320];
-		DIR *open;
 
 		read_comm(proc, pid, name, sizeof(name));
-		if (pid <= 0 || !is_of_owfs(name))
-			continue;
 		snprintf(path, sizeof(path), "%s/%d/fd", proc, pid);
-		open = opendir(path);
-		if (open)
-			closedir(open);
-		else
+		if (pid > 0 && is_of_owfs(name) && access(path, R_OK))
 			found = pid;
 	}
 	if (dir)

@@ -143,25 +143,6 @@ static void note_peer(struct connection *connection, const struct addrinfo *addr
 	         address->ai_family == AF_INET6 ? "[%s]:%s" : "%s:%s", host, port);
 }
 
-/* Of an address of this machine the kernel takes the same one for both ends, or 127.0.0.1. */
-static bool is_same_host(const struct sockaddr_storage *here, const struct sockaddr_storage *there)
-{
-	struct sockaddr_in v4, peer4;
-	struct sockaddr_in6 v6, peer6;
-
-	if (here->ss_family != AF_INET && here->ss_family != AF_INET6)
-		return false;
-	if (here->ss_family == AF_INET) {
-		memcpy(&v4, here, sizeof(v4));
-		memcpy(&peer4, there, sizeof(peer4));
-		return v4.sin_addr.s_addr == peer4.sin_addr.s_addr ||
-		       ntohl(peer4.sin_addr.s_addr) >> 24 == IN_LOOPBACKNET;
-	}
-	memcpy(&v6, here, sizeof(v6));
-	memcpy(&peer6, there, sizeof(peer6));
-	return memcmp(&v6.sin6_addr, &peer6.sin6_addr, sizeof(v6.sin6_addr)) == 0;
-}
-
 /*
  * Who is at the other end? -ECONNREFUSED: the socket itself, which happens with a port of this
  * machine without a listener, or a program that does not listen any more. -EPERM: one that is not
@@ -177,10 +158,8 @@ static int check_peer(struct connection *connection)
 	if (getsockname(connection->fd, (struct sockaddr *)&here, &here_len) ||
 	    getpeername(connection->fd, (struct sockaddr *)&there, &there_len))
 		return -errno;
-	if (!is_same_host(&here, &there))
+	if (here.ss_family == AF_UNIX)
 		return 0;
-	if (memcmp(&here, &there, here_len) == 0)
-		return -ECONNREFUSED;
 	err = listener_user("/proc/self/net", (struct sockaddr *)&there, (struct sockaddr *)&here,
 	                    &user);
 	if (err == -ENOENT || (!err && listener_is_trusted(user)))

@@ -54,6 +54,13 @@ static bool is_v4(const struct end *end)
 	return !end->words[0] && !end->words[1] && end->words[2] == htonl(0xffff);
 }
 
+/* Of an address of this machine the kernel takes the same one for both ends, or 127.0.0.1. */
+static bool is_here(const struct end *end, const struct end *client)
+{
+	return memcmp(end->words, client->words, sizeof(end->words)) == 0 ||
+	       (is_v4(end) && ntohl(end->words[3]) >> 24 == IN_LOOPBACKNET);
+}
+
 /* As tcp has it, or tcp6. */
 static void print_end(const struct end *end, bool v6, bool any, char text[END_TEXT])
 {
@@ -114,6 +121,10 @@ int listener_user(const char *folder, const struct sockaddr *at, const struct so
 
 	end_of(at, &end);
 	end_of(from, &client);
+	if (!is_here(&end, &client))
+		return -ENOENT;
+	if (memcmp(&end, &client, sizeof(end)) == 0)
+		return -ECONNREFUSED;
 	if (is_v4(&end))
 		look_in(folder, false, &end, &client, &found);
 	look_in(folder, true, &end, &client, &found);

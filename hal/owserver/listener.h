@@ -15,8 +15,9 @@
  * The user of the listener at this address and port, or of the one that listens at all addresses;
  * without a listener that of the program that has taken the connection from there.
  * folder: "/proc/self/net", of which tcp and tcp6 are read; both answer at once. -ECONNREFUSED:
- * nobody answers for the connection, or there are too many to see. -ENOENT: it does not end here,
- * as where another network namespace answers; or there is no /proc.
+ * nobody answers for the connection, or there are too many to see, or it is one of a socket to
+ * itself. -ENOENT: it does not end here, as at the address of another machine, or where another
+ * network namespace answers; or there is no /proc.
  */
 int listener_user(const char *folder, const struct sockaddr *at, const struct sockaddr *from,
                   uid_t *user);

@@ -154,6 +154,26 @@ static void test_only_who_listens_counts(void)
 	TEST_ASSERT_EQUAL(-ENOENT, user_at("::1"));
 }
 
+static void test_another_machine_has_no_user_here_and_a_socket_to_itself_is_nobody(void)
+{
+	struct sockaddr_storage at, from;
+	uid_t user;
+
+	write_file("tcp", ROW("00000000:10D0", "0A", "1001"));
+	make_address("192.0.2.7", 4304, &at);
+	make_address("192.0.2.8", 40000, &from);
+	TEST_ASSERT_EQUAL(-ENOENT, listener_user(folder, (struct sockaddr *)&at,
+	                                         (struct sockaddr *)&from, &user));
+	TEST_ASSERT_EQUAL(1001, user_at("192.0.2.7"));
+	/* the kernel's choice for all that begin with 127 */
+	make_address("127.0.0.5", 4304, &at);
+	make_address("127.0.0.1", 40000, &from);
+	TEST_ASSERT_EQUAL(
+		0, listener_user(folder, (struct sockaddr *)&at, (struct sockaddr *)&from, &user));
+	TEST_ASSERT_EQUAL(-ECONNREFUSED, listener_user(folder, (struct sockaddr *)&at,
+	                                               (struct sockaddr *)&at, &user));
+}
+
 static void test_without_the_files_nobody_is_known(void)
 {
 	TEST_ASSERT_EQUAL(-ENOENT, user_at("127.0.0.1"));
@@ -206,6 +226,7 @@ int main(void)
 	RUN_TEST(test_who_has_taken_the_connection_and_listens_no_more_counts);
 #endif
 	RUN_TEST(test_only_who_listens_counts);
+	RUN_TEST(test_another_machine_has_no_user_here_and_a_socket_to_itself_is_nobody);
 	RUN_TEST(test_without_the_files_nobody_is_known);
 	RUN_TEST(test_behind_too_many_sockets_nobody_is_believed);
 	RUN_TEST(test_a_connection_to_this_program_is_its_users_also_without_the_listener);
