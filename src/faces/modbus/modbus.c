@@ -278,7 +278,10 @@ static void show_status(struct modbus *m)
 
 static void run(struct modbus *m)
 {
-	m->face->tick_ns = clients_tick(&m->clients, ows_now());
+	int64_t now_ns = ows_now();
+
+	m->face->tick_ns = earlier_ns(clients_tick(&m->clients, now_ns),
+	                              writing_tick(&m->writing, now_ns));
 	show_status(m);
 }
 

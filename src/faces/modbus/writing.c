@@ -58,16 +58,20 @@ static int64_t longest_delay_ns(const struct config *config)
 }
 
 /*
- * Has owsd lost it? Then its outputs are at SafeValue, and the goodbye of a way that is closed
- * leaves none in force. One without a promise is not lost, and leaves its commands.
+ * For how long may it still be silent until owsd has lost it? Then its outputs are at SafeValue,
+ * and the goodbye of a way that is closed leaves none in force.
  */
+static int64_t left_ns(const struct writing *w, const struct writer *writer)
+{
+	return writer->heard_ns + NS_PER_S +
+	       later_ns(writer->promised_ns, longest_delay_ns(w->face->config)) -
+	       clock_ns(CLOCK_MONOTONIC);
+}
+
+/* One without a promise is not lost, and leaves its commands. */
 static bool is_spare(const struct writing *w, const struct writer *writer)
 {
-	int64_t silent_ns = clock_ns(CLOCK_MONOTONIC) - writer->heard_ns;
-
-	return silent_ns > NS_PER_S + later_ns(writer->promised_ns,
-	                                       longest_delay_ns(w->face->config)) ||
-	       !writer->promised_ns;
+	return !writer->promised_ns || left_ns(w, writer) < 0;
 }
 
 /* The one that was silent for longest of those that need no place. NULL: all do. */
@@ -236,6 +240,25 @@ enum exception writing_heard(struct writing *w, const struct listen_address *fro
 	if (by_register || !writer->by_register)
 		beat(w, writer);
 	return EXCEPTION_NONE;
+}
+
+int64_t writing_tick(struct writing *w, int64_t now_ns)
+{
+	int64_t next_ns = INT64_MAX;
+
+	for (unsigned i = 0; i < WRITERS; i++) {
+		struct writer *writer = &w->writers[i];
+
+		if (!writer->way.h || !writer->promised_ns)
+			continue;
+		if (is_spare(w, writer)) {
+			face_way_close(&writer->way);
+			writer->promised_ns = writer->way.open_ns = 0;
+		} else {
+			next_ns = earlier_ns(next_ns, now_ns + left_ns(w, writer) + NS_PER_MS);
+		}
+	}
+	return next_ns;
 }
 
 void writing_close(struct writing *w)

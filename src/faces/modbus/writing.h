@@ -49,6 +49,11 @@ enum exception writing_set(struct writing *w, const struct listen_address *from,
  */
 enum exception writing_heard(struct writing *w, const struct listen_address *from, int64_t came_ns,
                              bool by_register);
+/*
+ * End the way of each that owsd has lost: owsctl who shows it no longer as late. Returns when the
+ * next may be lost.
+ */
+int64_t writing_tick(struct writing *w, int64_t now_ns);
 /* At the end: who has promised a beat is lost to owsd, so that its outputs become safe. */
 void writing_close(struct writing *w);
 

@@ -171,6 +171,26 @@ static void test_an_address_that_owsd_has_lost_gives_its_place_to_another(void)
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &other, ows_now()));
 }
 
+static void test_who_is_lost_is_no_controller_any_more_until_it_commands_again(void)
+{
+	struct controller_beat beat;
+	int64_t now_ns = ows_now(), next_ns;
+
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, now_ns));
+	next_ns = writing_tick(&w, now_ns);
+	TEST_ASSERT_TRUE(next_ns > now_ns && next_ns < now_ns + 10 * S);
+	TEST_ASSERT_NOT_NULL(w.writers[0].way.h);
+	w.writers[0].heard_ns -= 10 * S;
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, writing_tick(&w, now_ns));
+	TEST_ASSERT_NULL(w.writers[0].way.h);
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_TRUE(beat.goodbye);
+	heard(&plc, false);
+	TEST_ASSERT_NULL(w.writers[0].way.h);
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 0, &plc, ows_now()));
+	TEST_ASSERT_EQUAL_UINT(2, instance_controllers(&in));
+}
+
 static void test_a_number_has_to_fit_before_any_is_set(void)
 {
 	struct ows_info info = {.name = "pump", .type = OWS_BOOL, .min = NAN, .max = NAN};
@@ -251,6 +271,7 @@ int main(void)
 	RUN_TEST(test_a_promise_that_the_file_ends_is_taken_back);
 	RUN_TEST(test_what_is_refused_is_so_by_the_exception_that_fits);
 	RUN_TEST(test_an_address_that_owsd_has_lost_gives_its_place_to_another);
+	RUN_TEST(test_who_is_lost_is_no_controller_any_more_until_it_commands_again);
 	RUN_TEST(test_a_number_has_to_fit_before_any_is_set);
 	RUN_TEST(test_what_owsd_refuses_leaves_all_else_of_the_request_as_it_is);
 	RUN_TEST(test_a_client_may_what_the_configuration_says);
