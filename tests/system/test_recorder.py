@@ -175,6 +175,12 @@ def test_a_history_goes_on_over_another_name_and_another_chip(scene):
     trend = ("trend", "-d", scene.path / "history", "--since", "5m", "--csv")
     now, old = (scene.owsctl(daemon, *trend, name) for name in ("hall", "room"))
     assert old.returncode == 0 and old.stdout == now.stdout and "23.5" in old.stdout, old
+    # and what the recorder has not written yet
+    daemon.config.write_text(text(scene, dict(moved, Name="attic")))
+    daemon.signal(signal.SIGHUP)
+    until(lambda: scene.get(daemon, "attic"), 20, "it is renamed")
+    new = scene.owsctl(daemon, *trend, "attic")
+    assert new.returncode == 0 and new.stdout == now.stdout.replace("hall", "attic"), new
 
 
 def test_it_waits_for_an_owsd_and_tells_what_is_wrong_with_its_command_line(scene):

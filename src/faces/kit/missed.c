@@ -15,7 +15,7 @@
 
 #define NS_PER_US 1000
 #define US_PER_S INT64_C(1000000)
-/* The recorder writes in five minutes, or what Flush says, ten minutes at most */
+/* The recorder writes after ten minutes, or what Flush says */
 #define BATCHES_NS (10 * NS_PER_S) /* between two writes of a position that nothing was sent for */
 #define WAIT_NS (2 * NS_PER_S)
 #define WAIT_MOST_NS (30 * NS_PER_S)

@@ -77,16 +77,39 @@ int past_look(const struct ctl *ctl, const char *directory, struct ows_history *
 	return CTL_DONE;
 }
 
+/* The recorder may not have written yet what owsd calls so now. */
+static int find_live(struct ows_history *h, const char *instance, const char *name)
+{
+	struct ows *live = NULL;
+	struct ows_info info;
+	int signal = -ENOENT;
+
+	if (ows_open(instance, OWS_READ, &live))
+		return -ENOENT;
+	for (int i = 0; signal == -ENOENT && !ows_info(live, i, &info); i++)
+		if (!strcmp(info.name, name) && *info.identity)
+			signal = ows_history_find(h, info.identity);
+	ows_close(live);
+	return signal;
+}
+
 int past_signal(struct ows_history *h, const char *instance, const char *name,
                 struct ows_history_signal *known)
 {
 	size_t skip = strlen(instance);
-	int signal = ows_history_find(h, name), err;
+	int signal, live, err;
 
-	if (signal == -ENOENT && !strncmp(name, instance, skip) && !strncmp(name + skip, "__", 2))
-		signal = ows_history_find(h, name + skip + 2);
+	if (!strncmp(name, instance, skip) && !strncmp(name + skip, "__", 2) &&
+	    ows_history_find(h, name) == -ENOENT)
+		name += skip + 2;
+	live = find_live(h, instance, name);
+	signal = live < 0 ? ows_history_find(h, name) : live;
 	err = signal < 0 ? signal : ows_history_signal(h, signal, known);
-	return err ? err : signal;
+	if (err)
+		return err;
+	if (live >= 0)
+		known->name = name;
+	return signal;
 }
 
 int past_unknown(const struct ctl *ctl, struct ows_history *h, const char *name)
@@ -109,7 +132,7 @@ int past_unknown(const struct ctl *ctl, struct ows_history *h, const char *name)
 				nearest = info.name;
 		}
 	if (known)
-		ctl_fail("the history has nothing of %s yet: owsd-recorder writes every five "
+		ctl_fail("the history has nothing of %s yet: owsd-recorder writes every ten "
 		         "minutes, or as Flush says",
 		         name);
 	else if (nearest)

@@ -381,7 +381,7 @@ static void test_of_a_signal_that_owsd_has_nothing_may_be_written_yet(void)
 	value(ROOM, 1, OWS_Q_GOOD, value_of_double(1), NULL);
 	written();
 	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv pump"));
-	holds(err, "the history has nothing of pump yet: owsd-recorder writes every five minutes");
+	holds(err, "the history has nothing of pump yet: owsd-recorder writes every ten minutes");
 	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv pumq"));
 	holds(err, "the history has no signal pumq; did you mean pump?");
 }
