@@ -13,7 +13,8 @@ const char *shell_word(const char *word, char text[SHELL_WORD])
 {
 	char *out = text;
 
-	if (*word && !word[strspn(word, PLAIN)])
+	/* zsh takes =WORD for the path of a command */
+	if (*word && *word != '=' && !word[strspn(word, PLAIN)])
 		return word;
 	*out++ = '\'';
 	for (; *word && out - text < SHELL_WORD - (int)sizeof(QUOTE) - 1; word++) {

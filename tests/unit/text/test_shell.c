@@ -19,11 +19,14 @@ void tearDown(void)
 
 static void test_a_word_without_a_character_of_the_shell_stands_as_it_is(void)
 {
-	static const char *const plain[] = {"/etc/owsd/OWS.rio", "owsd@OWS", "i2c:/dev/i2c-1"};
+	static const char *const plain[] = {"/etc/owsd/OWS.rio", "owsd@OWS", "i2c:/dev/i2c-1",
+	                                    "A=B"};
 
 	for (size_t i = 0; i < sizeof(plain) / sizeof(plain[0]); i++)
 		TEST_ASSERT_EQUAL_PTR(plain[i], shell_word(plain[i], text));
 	TEST_ASSERT_EQUAL_STRING("''", shell_word("", text));
+	/* in zsh the path of ls */
+	TEST_ASSERT_EQUAL_STRING("'=ls'", shell_word("=ls", text));
 }
 
 static void test_the_shell_has_each_other_word_as_it_was(void)
