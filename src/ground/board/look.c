@@ -18,6 +18,7 @@
 #include "hal/ds2482/ds2482.h"
 #include "hal/ds2482/look.h"
 #include "hal/serial/find.h"
+#include "hal/usb/find.h"
 #include "src/ground/board/data.h"
 #include "src/ground/board/files.h"
 #include "src/ground/board/look.h"
@@ -227,8 +228,36 @@ static void look_at_header(const struct scene *scene, unsigned number)
 	look_for_rivals(scene, number);
 }
 
-/* A machine without board data: any adapter will do. */
-static void look_at_adapters(const struct scene *scene)
+/* The serial ports that stay what they are, who has one, and DS9490R. Are there any? */
+static bool report_ports(const struct scene *scene)
+{
+	char pattern[BOARD_PATH], proc[BOARD_PATH], who[RIVALS_TEXT];
+	struct usb_place places[USB_PLACES];
+	unsigned count;
+	bool any;
+	glob_t found;
+
+	board_path(proc, scene->root, RIVALS_PROC);
+	board_path(pattern, scene->root, SERIAL_BY_ID "/*");
+	if (glob(pattern, 0, NULL, &found) == 0)
+		for (size_t i = 0; i < found.gl_pathc; i++) {
+			rivals_find(proc, found.gl_pathv[i], who, sizeof(who));
+			report_add(scene->report, BOARD_FACT, "serial port: %s%s%s",
+			           found.gl_pathv[i] + strlen(scene->root),
+			           *who ? ", open in " : "", who);
+		}
+	any = found.gl_pathc;
+	globfree(&found);
+	board_path(pattern, scene->root, "/sys/bus/usb/devices");
+	count = usb_find(pattern, places);
+	for (unsigned i = 0; i < count; i++)
+		report_add(scene->report, BOARD_FACT, "USB adapter: DS9490R at %s (target usb:)",
+		           places[i].device);
+	return any || count;
+}
+
+/* A machine without board data: any adapter will do; none is missing where another kind is. */
+static void look_at_adapters(const struct scene *scene, bool others)
 {
 	unsigned number[ADAPTERS], count;
 	char path[BOARD_PATH];
@@ -237,6 +266,8 @@ static void look_at_adapters(const struct scene *scene)
 
 	board_path(path, scene->root, I2C_SYS_ROOT);
 	count = i2c_list(path, number, ADAPTERS);
+	if (!count && others)
+		return;
 	if (!count) {
 		report_add(scene->report, BOARD_MISSING,
 		           "there is no I2C adapter: switch it on in "
@@ -299,24 +330,6 @@ static void report_masters(const struct scene *scene)
 		advise_master(scene);
 }
 
-/* The serial ports that stay what they are, and who has one. */
-static void report_ports(const struct scene *scene)
-{
-	char pattern[BOARD_PATH], proc[BOARD_PATH], who[RIVALS_TEXT];
-	glob_t found;
-
-	board_path(proc, scene->root, RIVALS_PROC);
-	board_path(pattern, scene->root, SERIAL_BY_ID "/*");
-	if (glob(pattern, 0, NULL, &found) == 0)
-		for (size_t i = 0; i < found.gl_pathc; i++) {
-			rivals_find(proc, found.gl_pathv[i], who, sizeof(who));
-			report_add(scene->report, BOARD_FACT, "serial port: %s%s%s",
-			           found.gl_pathv[i] + strlen(scene->root),
-			           *who ? ", open in " : "", who);
-		}
-	globfree(&found);
-}
-
 /* Find the base board and the HAT; the data of a named board decide which of both it is. */
 static int look_find(struct scene *scene, const struct board_data *data, unsigned count,
                      const char *id, char *why, size_t why_size)
@@ -365,6 +378,8 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 	scene.hat = board_data_hat(data, (unsigned)count, vendor, product);
 	err = look_find(&scene, data, (unsigned)count, id, why, why_size);
 	if (!err) {
+		bool ports;
+
 		base = scene.board;
 		name_board(&scene, model);
 		name_hat(&scene, vendor, product);
@@ -373,11 +388,11 @@ int board_look(const char *root, const char *folder, const char *id, struct boar
 		if (base && base->gpio_chip[0])
 			report_add(report, BOARD_FACT, "GPIO lines: target gpio:%s",
 			           base->gpio_chip);
+		ports = report_ports(&scene);
 		if (base && base->i2c >= 0)
 			look_at_header(&scene, (unsigned)base->i2c);
 		else
-			look_at_adapters(&scene);
-		report_ports(&scene);
+			look_at_adapters(&scene, ports);
 		report_masters(&scene);
 		report_notes(&scene, scene.board);
 		report_notes(&scene, scene.hat);

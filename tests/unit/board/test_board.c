@@ -353,6 +353,25 @@ static void test_a_machine_without_a_device_tree_takes_any_adapter(void)
 	TEST_ASSERT_FALSE(report.missing);
 }
 
+static void test_no_i2c_adapter_is_missing_where_another_kind_is_plugged_in(void)
+{
+	static const char port[] = "/dev/serial/by-id/usb-FTDI_FT232R-if00-port0";
+	char at[300];
+
+	put(port, "", 0);
+	look();
+	expect(BOARD_FACT, port, NULL);
+	TEST_ASSERT_FALSE(report.missing);
+	snprintf(at, sizeof(at), "%s%s", root, port);
+	TEST_ASSERT_EQUAL(0, unlink(at));
+	look();
+	TEST_ASSERT_TRUE(report.missing);
+	text("/sys/bus/usb/devices/1-1/uevent", "PRODUCT=4fa/2490/2\nDEVNAME=bus/usb/001/004\n");
+	look();
+	expect(BOARD_FACT, "DS9490R at /dev/bus/usb/001/004 (target usb:)", NULL);
+	TEST_ASSERT_FALSE(report.missing);
+}
+
 static void test_more_than_a_report_holds_leaves_its_lines_right(void)
 {
 	static const char *const chips[] = {"0018", "0019", "001a", "001b"};
@@ -475,6 +494,7 @@ int main(void)
 	RUN_TEST(test_another_program_on_the_adapter_is_a_note);
 	RUN_TEST(test_a_board_that_does_not_tell_is_named);
 	RUN_TEST(test_a_machine_without_a_device_tree_takes_any_adapter);
+	RUN_TEST(test_no_i2c_adapter_is_missing_where_another_kind_is_plugged_in);
 	RUN_TEST(test_more_than_a_report_holds_leaves_its_lines_right);
 	RUN_TEST(test_the_kernels_masters_are_named);
 	RUN_TEST(test_without_data_the_machine_is_looked_at_all_the_same);
