@@ -25,7 +25,7 @@ ROOMS = ("/tmp", "/mnt", "/media", "/srv", "/var/tmp")
 OWSD, CONTROL, CONFIG = 64711, 64712, 64713
 # name: user id, groups; the first group is his own
 USERS = {
-    "owsd": (OWSD, (OWSD, CONTROL)),
+    "owsd": (OWSD, (OWSD, CONTROL, CONFIG)),
     "reader": (64721, (64721, OWSD)),
     "plc": (64722, (64722, OWSD, CONTROL)),
     "setter": (64723, (64723, CONTROL)),

@@ -82,9 +82,12 @@ def test_who_may_ask_and_who_may_not(scene):
     service = Service(scene)
     text = service.file.read_text() + "# by the editor\n"
     data = order(tag_of(service.file), text.encode(), "anna")
-    for who in ("reader", "plc", "setter", "stranger", "owsd"):
+    for who in ("reader", "plc", "setter", "stranger"):
         refused = service.ask_as(who, data)
         assert refused.returncode == 1 and "PermissionError" in refused.stderr, (who, refused)
+    # owsd is in the group to serve it, and may not change what it is to do
+    refused = writing.Answer(service.ask_as("owsd", data).stdout)
+    assert refused.status == "refused" and "without the user owsd" in refused.text, refused.text
     done = service.ask_as("editor", data)
     answer = writing.Answer(done.stdout)
     assert (answer.status, answer.reload) == ("done", "done"), (done, service.writer.log())

@@ -31,6 +31,7 @@
 
 #define PROGRAM "owsd-writer"
 #define GROUP "owsd-config"
+#define SERVICE "owsd" /* its user */
 #define LOOK_MS 100   /* how often it looks which visits have ended */
 #define IDLE_MS 30000 /* then the service manager waits in its place */
 
@@ -65,6 +66,8 @@ static void find_group(struct writer *writer)
 
 	writer->has_group = (geteuid() == 0 || (owner_user(PROGRAM, &uid) && uid == geteuid())) &&
 	                    owner_group(GROUP, &writer->group);
+	if (!owner_user(SERVICE, &writer->owsd))
+		writer->owsd = (uid_t)-1;
 }
 
 /*

@@ -136,7 +136,8 @@ static char *receive_request(int fd, struct order *order, struct answer *answer)
 static bool may_write(const struct writer *writer, const struct peer *peer)
 {
 	return !peer->uid || peer->uid == geteuid() ||
-	       (writer->has_group && peer_in_group(peer, writer->group));
+	       (writer->has_group && peer->uid != writer->owsd &&
+	        peer_in_group(peer, writer->group));
 }
 
 static void ask_reload(const struct writer *writer, struct answer *answer)
@@ -198,7 +199,7 @@ void visit(const struct writer *writer, int fd, bool may)
 	else if (!may_write(writer, &peer))
 		answer_say(&answer, ANSWER_REFUSED,
 		           "no right to change the configuration: that is for root and the group "
-		           "owsd-config");
+		           "owsd-config, without the user owsd");
 	else if (!may)
 		answer_say(&answer, ANSWER_REFUSED,
 		           "too many requests of this user wait: try again when one has ended");
