@@ -32,8 +32,8 @@
 #define PROGRAM "owsd-writer"
 #define GROUP "owsd-config"
 #define SERVICE "owsd" /* its user */
-#define LOOK_MS 100   /* how often it looks which visits have ended */
-#define IDLE_MS 30000 /* then the service manager waits in its place */
+#define LOOK_MS 100    /* how often it looks which visits have ended */
+#define IDLE_MS 30000  /* then the service manager waits in its place */
 
 /* The socket of the service manager, path then is ""; else that of -l, or in this user's place. */
 static int writer_socket(const struct face_arguments *a, char path[FACE_PATH])

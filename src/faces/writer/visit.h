@@ -15,7 +15,7 @@ struct log;
 struct writer {
 	const char *file, *instance;
 	bool has_group; /* else only root and this user may write */
-	uid_t owsd;     /* which is in the group to serve it, and has no part in the configuration */
+	uid_t owsd; /* which is in the group to serve it, and has no part in the configuration */
 	gid_t group;
 	struct log *log;
 };
