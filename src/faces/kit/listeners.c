@@ -141,9 +141,9 @@ static void shut(struct listeners *l, unsigned i)
 	if (l->fds[i] >= 0) {
 		epoll_ctl(l->epoll, EPOLL_CTL_DEL, l->fds[i], NULL);
 		close(l->fds[i]);
+		if (!l->err[i])
+			l->tell(l->face, &l->at[i], false);
 	}
-	if (l->fds[i] >= 0 && !l->err[i])
-		l->tell(l->face, &l->at[i], false);
 	l->fds[i] = -1;
 	l->has_address[i] = false;
 	l->err[i] = 0;

@@ -33,7 +33,8 @@ static bool has_descriptor(const struct ows *h)
 	return h->join.news >= 0 && !handle_is_forked(h);
 }
 
-void news_arm(struct ows *h)
+/* Make the descriptor readable at the next news, and not before. Without one it does nothing. */
+static void news_arm(struct ows *h)
 {
 	int saved = errno;
 	char room[64];

@@ -6,8 +6,6 @@
 
 struct ows;
 
-/* Make the descriptor readable at the next news, and not before. Without one it does nothing. */
-void news_arm(struct ows *h);
 /*
  * Sleep while the image's count of news is as seen, left_ns at most. Returns 0, -ETIMEDOUT or
  * -EINTR.

@@ -27,7 +27,8 @@ enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive
 	return held ? INSTANCE_HANGS : INSTANCE_KILLED;
 }
 
-bool instance_is_up(enum instance_state state)
+/* Does the instance's process exist? Then owsctl removes none of its files. */
+static bool is_up(enum instance_state state)
 {
 	return state == INSTANCE_RUNNING || state == INSTANCE_HANGS;
 }
@@ -170,7 +171,7 @@ void instance_look(const struct shm_dir *dir, const char *name, int64_t now_ns,
 	info->state = instance_state_of(!err, daemon.state, daemon.alive, lock, is_owsd(info->pid));
 	if (info->state == INSTANCE_HIDDEN)
 		info->why = "it is starting, or its files were removed";
-	if (instance_is_up(info->state)) {
+	if (is_up(info->state)) {
 		find_config(info);
 		if (lock < 0 && lock != -EACCES)
 			info->why = "it runs without its lock: the file was removed or replaced";
@@ -185,7 +186,7 @@ bool instance_runs(const struct shm_dir *dir, const char *name, int *pid)
 
 	instance_look(dir, name, ows_now(), &info);
 	*pid = info.pid;
-	return instance_is_up(info.state);
+	return is_up(info.state);
 }
 
 static bool is_same_file(const char *a, const char *b)
@@ -239,8 +240,7 @@ static unsigned running(const char *file, char *name, char *names, size_t size)
 
 			instance_look(&dir, remains.name[k], ows_now(), &info);
 			default_config(&info);
-			if (!instance_is_up(info.state) ||
-			    (file && !is_same_file(info.config, file)))
+			if (!is_up(info.state) || (file && !is_same_file(info.config, file)))
 				continue;
 			snprintf(name, SEGMENT_NAME_MAX + 1, "%s", remains.name[k]);
 			if (used < size)

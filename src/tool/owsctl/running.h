@@ -26,8 +26,6 @@ enum instance_state {
  */
 enum instance_state instance_state_of(bool has_image, uint32_t state, bool alive, int lock,
                                       bool process);
-/* Does the instance's process exist? Then owsctl removes none of its files. */
-bool instance_is_up(enum instance_state state);
 const char *instance_state_text(enum instance_state state);
 
 /* The configuration that a command line as in /proc/PID/cmdline names; NULL: it names none. */

@@ -26,7 +26,6 @@
 #define SCAN_END ">new.rio && sudo cp new.rio %s; sudo systemctl start owsd@%s"
 #define PORT_TEXT 200
 #define OWSERVER "localhost:4304" /* a way of auto */
-#define OWSERVER_PORT 4304
 #define OWSERVER_OFF "sudo systemctl disable --now owserver.socket owserver.service"
 
 void check_disk(struct doctor *d)
@@ -220,8 +219,7 @@ void check_board(struct doctor *d)
 	find_port(d, port);
 	if (needed && seen_automatic(d)) {
 		/* an owserver is a way, too: one that does not run is reported as a target */
-		needed = d->alive ? !seen_owserver_stopped(d, OWSERVER)
-		                  : !seen_listens(d->root, OWSERVER_PORT);
+		needed = d->alive ? !seen_owserver_stopped(d, OWSERVER) : !seen_owserver(d->root);
 		if (needed && *port && d->config)
 			advise_port(d, port);
 		needed = needed && !*port;
@@ -327,7 +325,7 @@ static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8])
 	find_port(d, port);
 	if (d->config && d->config->target_count && !seen_automatic(d))
 		return d->config->targets[0].text;
-	if (*port && d->board.missing && !seen_listens(d->root, OWSERVER_PORT))
+	if (*port && d->board.missing && !seen_owserver(d->root))
 		snprintf(text, PORT_TEXT + 8, "serial:%s", port);
 	else
 		snprintf(text, PORT_TEXT + 8, "auto");

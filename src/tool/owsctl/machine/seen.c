@@ -4,9 +4,9 @@
  * of the system print is a file there, so that a recorded machine is as good as its own.
  */
 #include <errno.h>
+#include <fnmatch.h>
 #include <grp.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "hal/base/time.h"
@@ -53,21 +53,21 @@ bool seen_in_group(const char *root, const char *user, const char *group)
 	return found;
 }
 
-bool seen_listens(const char *root, unsigned port)
+bool seen_owserver(const char *root)
 {
 	static const char *const files[] = {"tcp", "tcp6"};
-	char path[512], line[256], at[5], state[3];
+	char path[512], line[256], port[5], state[3];
 	bool found = false;
 
 	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
 		snprintf(path, sizeof(path), "%s/proc/net/%s", root, files[i]);
 		FILE *in = fopen(path, "re");
 
-		/* "  0: 0100007F:10D0 00000000:0000 0A": 0A is a listener */
+		/* "  0: 0100007F:10D0 00000000:0000 0A": port 4304, and 0A is a listener */
 		while (in && !found && fgets(line, sizeof(line), in))
-			found = sscanf(line, " %*[0-9]: %*[0-9A-F]:%4[0-9A-F] %*s %2[0-9A-F]", at,
+			found = sscanf(line, " %*[0-9]: %*[0-9A-F]:%4[0-9A-F] %*s %2[0-9A-F]", port,
 			               state) == 2 &&
-			        strtoul(at, NULL, 16) == port && !strcmp(state, "0A");
+			        !strcmp(port, "10D0") && !strcmp(state, "0A");
 		if (in)
 			fclose(in);
 	}
@@ -82,24 +82,19 @@ bool seen_automatic(const struct doctor *d)
 
 bool seen_owserver_stopped(const struct doctor *d, const char *target)
 {
+	/* at another port it is maybe not that of the package */
+	static const char *const local[] = {"owserver:localhost:4304", "owserver:127.*:4304",
+	                                    "owserver:\\[::1]:4304"};
 	const char *unit = seen_automatic(d) ? "systemd/system/*.wants/owserver.s*"
 	                                     : "systemd/system/owserver.service";
-	char text[TARGET_CANONICAL], *host = text + strlen("owserver:"), *port;
+	char text[TARGET_CANONICAL];
+	bool is = false;
 	glob_t found;
-	bool installed;
 
 	target_canonical(target, text);
-	port = strrchr(text, ':');
-	if (strncmp(text, "owserver:", strlen("owserver:")) != 0 || port <= host)
-		return false;
-	*port++ = '\0';
-	/* at another port it is maybe not that of the package */
-	if (strcmp(port, "4304") != 0)
-		return false;
-	if (strcmp(host, "localhost") != 0 && strncmp(host, "127.", 4) != 0 &&
-	    strcmp(host, "[::1]") != 0)
-		return false;
-	installed = faces_files(d->root, unit, &found) > 0;
+	for (size_t i = 0; i < sizeof(local) / sizeof(local[0]); i++)
+		is |= !fnmatch(local[i], text, 0);
+	is &= faces_files(d->root, unit, &found) > 0;
 	globfree(&found);
-	return installed && !seen_listens(d->root, (unsigned)strtoul(port, NULL, 10));
+	return is && !seen_owserver(d->root);
 }

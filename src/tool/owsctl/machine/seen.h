@@ -48,8 +48,8 @@ struct doctor {
 
 /* The output of a command, in d->text; of a recorded machine its file recorded/NAME. */
 bool seen_output(struct doctor *d, const char *name, const char *const words[]);
-/* Does a program of this machine listen at the TCP port? */
-bool seen_listens(const char *root, unsigned port);
+/* Does a program of this machine listen at the port of an owserver? */
+bool seen_owserver(const char *root);
 /* Does owsd look by itself which way there is? */
 bool seen_automatic(const struct doctor *d);
 /*

@@ -49,7 +49,8 @@ bool unit_is_active(const struct unit *unit)
 	return unit && !strcmp(unit->active, "active");
 }
 
-bool units_run(const struct doctor *d)
+/* Does owsd run, also where this person may not look at its signals? */
+static bool does_run(const struct doctor *d)
 {
 	return d->alive || ((*d->root || d->err == -EACCES) && unit_is_active(units_owsd(d)));
 }
@@ -58,7 +59,7 @@ const char *units_load_command(const struct doctor *d, char text[UNITS_COMMAND])
 {
 	char word[SHELL_WORD];
 
-	if (units_run(d))
+	if (does_run(d))
 		snprintf(text, UNITS_COMMAND, "sudo owsctl -n %s reload", d->instance);
 	else if (units_owsd(d))
 		snprintf(text, UNITS_COMMAND, "sudo systemctl restart owsd@%s", d->instance);

@@ -15,8 +15,6 @@ const struct unit *units_find(const struct doctor *d, const char *id);
 const struct unit *units_owsd(const struct doctor *d);
 /* NULL is not. */
 bool unit_is_active(const struct unit *unit);
-/* Does owsd run, also where this person may not look at its signals? */
-bool units_run(const struct doctor *d);
 /* The command that has the configuration loaded as owsd is now: it works. Returns text. */
 #define UNITS_COMMAND 1000
 const char *units_load_command(const struct doctor *d, char text[UNITS_COMMAND]);
