@@ -74,12 +74,10 @@ static bool takes_lock(const char *name)
 
 static bool is_of_owfs(const char *name)
 {
-	static const char *const names[] = {"owserver", "owfs", "owhttpd", "owftpd"};
-	size_t i = 0;
+	char word[20];
 
-	while (i < sizeof(names) / sizeof(names[0]) && strcmp(name, names[i]) != 0)
-		i++;
-	return i < sizeof(names) / sizeof(names[0]);
+	snprintf(word, sizeof(word), "|%s|", name);
+	return strstr("|owserver|owfs|owhttpd|owftpd|", word);
 }
 
 int rivals_hidden(const char *proc, char *text, size_t size)

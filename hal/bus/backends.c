@@ -21,7 +21,8 @@ const struct bus_ops *bus_backend(const char *target, const char **where)
 	size_t len = colon ? (size_t)(colon - target) : strlen(target);
 	const struct bus_ops *ops = backend_of(target, len);
 
-	*where = !ops ? target : colon ? colon + 1 : "";
+	if (where)
+		*where = !ops ? target : colon ? colon + 1 : "";
 	return ops ? ops : backend_of("owserver", strlen("owserver"));
 }
 

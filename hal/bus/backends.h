@@ -5,8 +5,8 @@
 #include "hal/bus/bus.h"
 
 /*
- * The backend that a target means: that of its scheme, else owserver. *where: the text after the
- * scheme. NULL: this program has none of it.
+ * The backend that a target means: that of its scheme, else owserver. *where, unless it is NULL:
+ * the text after the scheme. Returns NULL: this program has none of it.
  */
 const struct bus_ops *bus_backend(const char *target, const char **where);
 /* Have its values the age of the chip's, by a cache of owsd's own? */

@@ -29,7 +29,8 @@ enum { EXACT, ANY, NONE };
 struct found {
 	unsigned form; /* in which the address of the listener stands there */
 	uid_t listener, owner;
-	bool connected, taken, cut; /* taken: its program has the connection, and is of owner */
+	bool taken;   /* a program has the connection, and is of owner */
+	bool unclear; /* nobody has it, or there is more to see */
 };
 
 static void end_of(const struct sockaddr *at, struct end *end)
@@ -103,12 +104,12 @@ static void look_in(const char *folder, bool v6, const struct end *at, const str
 		} else if (found->form < NONE) {
 			break;
 		} else if (strcmp(here, forms[EXACT]) == 0 && strcmp(there, client) == 0) {
-			found->connected = true;
 			found->taken = strcmp(inode, "0") != 0;
+			found->unclear = !found->taken;
 			found->owner = (uid_t)strtoul(uid, NULL, 10);
 		}
 	}
-	found->cut |= n == LINES;
+	found->unclear |= n == LINES;
 	if (file)
 		fclose(file);
 }
@@ -131,7 +132,7 @@ int listener_user(const char *folder, const struct sockaddr *at, const struct so
 	*user = found.form < NONE ? found.listener : found.owner;
 	if (found.form < NONE || found.taken)
 		return 0;
-	return found.cut || found.connected ? -ECONNREFUSED : -ENOENT;
+	return found.unclear ? -ECONNREFUSED : -ENOENT;
 }
 
 bool listener_is_trusted(uid_t user)

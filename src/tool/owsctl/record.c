@@ -42,10 +42,10 @@ static void show_progress(const struct trace *trace)
 /* A remark; with the target's kind alone where its address is to be hidden. */
 static void write_command(FILE *file, const struct ctl *ctl, bool anonymous, char **argv)
 {
-	const char *where, *target = ctl->target ? ctl->target : "owserver";
+	const char *target = ctl->target ? ctl->target : "owserver";
 
 	if (anonymous && strcmp(target, "auto") != 0)
-		target = bus_backend(target, &where)->scheme;
+		target = bus_backend(target, NULL)->scheme;
 	fprintf(file, "# owsctl " OWSD_VERSION " -t %s", target);
 	for (; *argv; argv++) {
 		fputc(' ', file);

@@ -92,25 +92,21 @@ void check_configuration(struct doctor *d)
 
 static bool needs_board(const char *target)
 {
-	const char *where;
-	const struct bus_ops *ops = bus_backend(target, &where);
+	const struct bus_ops *ops = bus_backend(target, NULL);
 
 	return ops && ops->board_advice;
 }
 
 static bool needs_master(const char *target)
 {
-	const char *where;
-
-	return bus_backend(target, &where) == bus_backend("w1", &where);
+	return bus_backend(target, NULL) == bus_backend("w1", NULL);
 }
 
 static bool needs_port(const char *target)
 {
-	const char *where;
-	const struct bus_ops *ops = bus_backend(target, &where);
+	const struct bus_ops *ops = bus_backend(target, NULL);
 
-	return ops == bus_backend("serial", &where) || ops == bus_backend("uart", &where);
+	return ops == bus_backend("serial", NULL) || ops == bus_backend("uart", NULL);
 }
 
 /* Target n, of owsd or of the configuration: false: there are no more. */

@@ -65,11 +65,10 @@ static void report_target(struct doctor *d, int index, const char *names, bool u
 static void report_wire_down(struct doctor *d, uint32_t wire)
 {
 	struct ows_target way, best;
-	const char *where;
 	int found = -1;
 
 	for (int i = 0; ows_target(d->ows, i, &way) == 0; i++) {
-		const struct bus_ops *ops = bus_backend(way.name, &where);
+		const struct bus_ops *ops = bus_backend(way.name, NULL);
 		bool stopped = seen_owserver_stopped(d, way.name);
 
 		if (way.group != wire || (found >= 0 && !stopped && !(ops && ops->board_advice)))

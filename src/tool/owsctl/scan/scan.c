@@ -149,8 +149,7 @@ static void scan_board(const char *target)
 {
 	struct board_report report;
 	char folder[400], why[800];
-	const char *where;
-	const struct bus_ops *ops = target ? bus_backend(target, &where) : NULL;
+	const struct bus_ops *ops = target ? bus_backend(target, NULL) : NULL;
 
 	if (!ops || !(ops->board_advice || !strcmp(target, "auto")))
 		return;
