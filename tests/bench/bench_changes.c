@@ -133,7 +133,7 @@ static void measure(uint32_t count)
 	static uint32_t counts[ROWS_MAX];
 	struct ows_cursor cursor = {0};
 	struct segment segment;
-	char name[32], line[48];
+	char name[32], file[SEGMENT_FILE], line[48];
 	pthread_t writer;
 	double sum = 0;
 	int missed = 0;
@@ -165,7 +165,7 @@ static void measure(uint32_t count)
 	__atomic_store_n(&stop, true, __ATOMIC_RELAXED);
 	pthread_join(writer, NULL);
 	ows_close(h);
-	segment_remove(bench_dir(), name, SEGMENT_IMAGE);
+	unlinkat(bench_dir()->fd, segment_file(name, "image", file), 0);
 	segment_close(&segment);
 	if (missed || sum <= 0)
 		fprintf(stderr, "changes: %d rounds did not give %d changes\n", missed, CHANGES);
@@ -293,7 +293,7 @@ static void *beat(void *ctx)
 static void wait_beside_an_idle_one(void)
 {
 	struct segment segment;
-	char name[32];
+	char name[32], file[SEGMENT_FILE];
 	pthread_t heart;
 	struct ows *h;
 
@@ -306,7 +306,7 @@ static void wait_beside_an_idle_one(void)
 	__atomic_store_n(&stop, true, __ATOMIC_RELAXED);
 	pthread_join(heart, NULL);
 	ows_close(h);
-	segment_remove(bench_dir(), name, SEGMENT_IMAGE);
+	unlinkat(bench_dir()->fd, segment_file(name, "image", file), 0);
 	segment_close(&segment);
 }
 

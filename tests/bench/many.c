@@ -226,11 +226,13 @@ void many_pace(struct many_pace pace)
 
 void many_close(void)
 {
+	char file[SEGMENT_FILE];
+
 	__atomic_store_n(&many.stop, true, __ATOMIC_RELAXED);
 	pthread_join(many.thread, NULL);
 	control_destroy(many.control);
 	controller_layout_free(&many.layout);
-	segment_remove(bench_dir(), many.name, SEGMENT_IMAGE);
+	unlinkat(bench_dir()->fd, segment_file(many.name, "image", file), 0);
 	segment_close(&many.segment);
 	sem_destroy(&many.bell);
 }

@@ -192,13 +192,3 @@ void segment_close(struct segment *segment)
 	segment->fd = -1;
 	segment->temporary[0] = '\0';
 }
-
-int segment_remove(const struct shm_dir *dir, const char *instance, enum segment_kind kind)
-{
-	char name[SEGMENT_FILE];
-
-	if (!segment_name_ok(instance))
-		return -EINVAL;
-	final_name(instance, kind, name);
-	return unlinkat(dir->fd, name, 0) < 0 ? -errno : 0;
-}

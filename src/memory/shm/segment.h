@@ -60,5 +60,3 @@ bool segment_named(const char *instance, const struct segment *segment);
 int segment_open_old(const struct shm_dir *dir, const char *instance, enum segment_kind kind,
                      struct segment *segment);
 void segment_close(struct segment *segment);
-/* Remove the name. */
-int segment_remove(const struct shm_dir *dir, const char *instance, enum segment_kind kind);

@@ -158,7 +158,7 @@ void instance_leave(struct instance *in)
 void instance_end(struct instance *in)
 {
 	instance_leave(in);
-	segment_remove(folder_dir(), in->name, SEGMENT_IMAGE);
+	remove(folder_file(in->name, "image"));
 }
 
 struct controller_memory *instance_controller(struct instance *in, unsigned i)

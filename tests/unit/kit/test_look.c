@@ -192,7 +192,7 @@ static void test_an_image_that_is_gone_is_not_current(void)
 	looks_quiet();
 	looked_ns = face.looked_ns;
 	image_state(&in.image, OWS_STATE_RETIRED);
-	segment_remove(folder_dir(), in.name, SEGMENT_IMAGE);
+	remove(folder_file(in.name, "image"));
 	looks_quiet();
 	TEST_ASSERT_TRUE(face.live);
 	TEST_ASSERT_FALSE(look_is_current(&face));

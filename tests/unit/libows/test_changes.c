@@ -2,6 +2,7 @@
 /* Tests of ows_changes(): what it gives, when it waits, and when all has to be looked at. */
 #include <errno.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <time.h>
 
 #include "unity.h"
@@ -269,7 +270,7 @@ static void test_errno_stays_as_it_was(void)
 	errno = 77;
 	ows_changes(h, &cursor, ids, ROOM, MS);
 	image_state(&in.image, OWS_STATE_STOPPED);
-	segment_remove(folder_dir(), in.name, SEGMENT_IMAGE);
+	remove(folder_file(in.name, "image"));
 	ows_changes(h, &cursor, ids, ROOM, MS);
 	TEST_ASSERT_EQUAL(77, errno);
 }

@@ -5,6 +5,7 @@
  */
 #include <errno.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <time.h>
 
 #include "unity.h"
@@ -58,7 +59,7 @@ void tearDown(void)
 
 static void remove_names(void)
 {
-	TEST_ASSERT_EQUAL(0, segment_remove(folder_dir(), first.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, remove(folder_file(first.name, "image")));
 	instance_kill(&first);
 }
 

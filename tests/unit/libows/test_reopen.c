@@ -325,7 +325,7 @@ static void test_reopen_waits_for_the_new_image(void)
 	instance_put(&in, 2, 1, ows_now());
 	image_state(&in.image, OWS_STATE_STOPPED);
 	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
-	TEST_ASSERT_EQUAL(0, segment_remove(folder_dir(), in.name, SEGMENT_IMAGE));
+	TEST_ASSERT_EQUAL(0, remove(folder_file(in.name, "image")));
 	TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
 	TEST_ASSERT_EQUAL(-ESTALE, ows_get(h, b, ows_now(), &v));
 	TEST_ASSERT_EQUAL_INT64(1, v.integer);
