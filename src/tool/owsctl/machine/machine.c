@@ -129,17 +129,14 @@ static bool lacks(const struct doctor *d, bool (*needs)(const char *target))
 	/* this person may not see how they do */
 	if (d->err == -EACCES)
 		return false;
-	for (int i = 0; d->alive && ows_target(d->ows, i, &target) == 0; i++) {
+	for (unsigned n = 0; target_at(d, n, &target); n++) {
 		bool up = false;
 
-		for (int k = 0; ows_target(d->ows, k, &other) == 0; k++)
+		for (int k = 0; d->alive && ows_target(d->ows, k, &other) == 0; k++)
 			up |= other.group == target.group && other.state == 1;
 		if (!up && needs(target.name))
 			return true;
 	}
-	for (unsigned i = 0; !d->alive && d->config && i < d->config->target_count; i++)
-		if (needs(d->config->targets[i].text))
-			return true;
 	/* a machine on which nothing was set up is to have a DS2482 */
 	return d->err == -ENOENT && !d->config && needs == needs_board;
 }
@@ -205,13 +202,15 @@ static void advise_port(struct doctor *d, const char *port)
 
 void check_board(struct doctor *d)
 {
-	bool needed = lacks(d, needs_board), used;
+	bool needed = lacks(d, needs_board), used = false;
 	struct ows_target target;
 	char port[PORT_TEXT];
 
-	for (unsigned n = 0; target_at(d, n, &target); n++)
+	for (unsigned n = 0; target_at(d, n, &target); n++) {
+		used |= needs_board(target.name) && target.state == 1;
 		if (needs_port(target.name))
 			check_port(d, target.name);
+	}
 	find_port(d, port);
 	if (needed && seen_automatic(d)) {
 		/* an owserver is a way, too: one that does not run is reported as a target */
@@ -220,9 +219,7 @@ void check_board(struct doctor *d)
 			advise_port(d, port);
 		needed = needed && !*port;
 	}
-	used = needed;
-	for (int i = 0; d->alive && ows_target(d->ows, i, &target) == 0; i++)
-		used |= needs_board(target.name) && target.state == 1;
+	used |= needed;
 	for (unsigned i = 0; i < d->board.count; i++) {
 		const struct board_line *line = &d->board.line[i];
 		enum board_kind kind = BOARD_NOTE;
@@ -317,14 +314,13 @@ void check_rights(struct doctor *d)
 static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8])
 {
 	char port[PORT_TEXT];
+	bool serial;
 
 	find_port(d, port);
 	if (d->config && d->config->target_count && !seen_automatic(d))
 		return d->config->targets[0].text;
-	if (*port && d->board.missing && !seen_owserver(d->root))
-		snprintf(text, PORT_TEXT + 8, "serial:%s", port);
-	else
-		snprintf(text, PORT_TEXT + 8, "auto");
+	serial = *port && d->board.missing && !seen_owserver(d->root);
+	snprintf(text, PORT_TEXT + 8, "%s%s", serial ? "serial:" : "auto", serial ? port : "");
 	return text;
 }
 
