@@ -10,7 +10,6 @@
 
 #include "hal/owserver/listener.h"
 
-#define LISTENS "0A"
 #define LINES 16384         /* of a file at most; the listeners stand first */
 #define FIRST_PERSON 1000   /* UID_MIN of Debian; below: system users */
 #define FIRST_DYNAMIC 61184 /* DynamicUser of systemd */
@@ -95,7 +94,7 @@ static void look_in(const char *folder, bool v6, const struct end *at, const str
 		if (sscanf(line, " %*[0-9]: %37s %37s %2s %*s %*s %*s %10[0-9] %*s %20[0-9]", here,
 		           there, state, uid, inode) != 5)
 			continue;
-		if (strcmp(state, LISTENS) == 0) {
+		if (strcmp(state, "0A") == 0) {
 			for (unsigned form = 0; form < found->form; form++)
 				if (strcmp(here, forms[form]) == 0) {
 					found->form = form;

@@ -56,13 +56,10 @@ int listeners_add(struct listeners *l, int fd)
 	return 0;
 }
 
-static int open_one(struct listeners *l, unsigned i)
+static int open_one(struct listeners *l, unsigned i, const struct sockaddr_storage *at)
 {
-	struct sockaddr_storage at;
-	int fd;
+	int fd = listen_at_address(at, true, !listen_is_loopback(&l->at[i]));
 
-	listen_sockaddr(&l->at[i], &at);
-	fd = listen_at_address(&at, true, !listen_is_loopback(&l->at[i]));
 	return fd < 0 ? fd : add_at(l, i, fd);
 }
 
@@ -96,9 +93,10 @@ static void look_at(struct listeners *l, unsigned i)
 {
 	struct sockaddr_storage at;
 	char why[LISTEN_WHY_MAX];
-	int err = l->fds[i] < 0 ? open_one(l, i) : 0;
+	int err;
 
 	listen_sockaddr(&l->at[i], &at);
+	err = l->fds[i] < 0 ? open_one(l, i, &at) : 0;
 	if (!err && !listen_is_here(&at))
 		err = -EADDRNOTAVAIL;
 	if (err && may_miss(l, i, err))
@@ -112,19 +110,6 @@ static void look_at(struct listeners *l, unsigned i)
 		return;
 	listen_why(&l->at[i], err, why);
 	log_err(l->face->log, "%s%s", why, listen_remedy(err));
-}
-
-static void keep_first_trouble(struct listeners *l)
-{
-	unsigned i = 0;
-
-	while (i < l->count && !l->err[i])
-		i++;
-	l->face->shut[0] = '\0';
-	if (i == l->count)
-		return;
-	listen_why(&l->at[i], l->err[i], l->face->shut);
-	l->face->shut_remedy = listen_remedy(l->err[i]);
 }
 
 static bool is_among(const struct listen_address *address, const struct listen_address *of,
@@ -184,14 +169,18 @@ int64_t listeners_tick(struct listeners *l, int64_t now_ns)
 	if (now_ns < l->look_ns)
 		return l->look_ns;
 	l->look_ns = INT64_MAX;
+	l->face->shut[0] = '\0';
 	for (unsigned i = 0; i < l->count; i++) {
 		if (!l->has_address[i])
 			continue;
 		look_at(l, i);
 		if (l->err[i] || !listen_is_loopback(&l->at[i]))
 			l->look_ns = now_ns + LOOK_NS;
+		if (!l->err[i] || *l->face->shut)
+			continue;
+		listen_why(&l->at[i], l->err[i], l->face->shut);
+		l->face->shut_remedy = listen_remedy(l->err[i]);
 	}
-	keep_first_trouble(l);
 	return l->look_ns;
 }
 

@@ -299,10 +299,8 @@ static void tell(struct face *face, const struct listen_address *at, bool served
 int clients_open(struct clients *c)
 {
 	c->epoll = epoll_create1(EPOLL_CLOEXEC);
-	c->listeners.face = c->face;
-	c->listeners.epoll = c->epoll;
-	c->listeners.tell = tell;
-	c->listeners.look_ns = INT64_MAX;
+	c->listeners = (struct listeners){
+		.face = c->face, .epoll = c->epoll, .tell = tell, .look_ns = INT64_MAX};
 	return c->epoll < 0 ? -errno : face_watch(c->face, c->epoll, POLLIN);
 }
 
