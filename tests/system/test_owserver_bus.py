@@ -171,6 +171,35 @@ def test_a_server_of_another_person_is_not_believed(scene):
             proxy.kill()
 
 
+# It is in no list of listeners when owsd looks for it there
+QUICK = """import os, socket
+os.setuid(12345)
+listener = socket.socket(socket.AF_INET6)
+listener.bind(("::1", 0))
+listener.listen()
+print(listener.getsockname()[1], flush=True)
+client = listener.accept()[0]
+listener.close()
+try:
+    print("asked", len(client.recv(4096)))
+except ConnectionError:
+    print("asked 0")
+"""
+
+
+def test_a_person_who_closes_the_listener_at_once_is_not_believed(scene):
+    owsdtest.need_ipv6()
+    if os.geteuid():
+        owsdtest.skip("only root becomes another user")
+    for _ in range(10):
+        with subprocess.Popen([sys.executable, "-c", QUICK], stdout=subprocess.PIPE, text=True) as quick:
+            try:
+                asked = scene.owsctl(None, "-t", f"[::1]:{quick.stdout.readline().strip()}", "scan")
+                assert asked.returncode and quick.stdout.readline() == "asked 0\n", asked
+            finally:
+                quick.kill()
+
+
 def test_genuine_that_refuses_persistence_serves_all_the_same(scene):
     server = scene.owserver(tester=["28"], options=["--clients_persistent_low=0",
                                                     "--clients_persistent_high=1"])
