@@ -413,6 +413,9 @@ def test_a_user_sees_the_nearest_owsd_of_a_name_that_lives(scene):
     until(lambda: f"{home}/owsd True" in watch.log(), 20, "it looks at his own")
     own.kill()
     until(lambda: served_by(service), 20, "of a dead one and a living one the living one")
+    said = scene._run([*as_plc, programs() / "owsctl", "-n", service.name, "doctor"], 30).stdout
+    assert f"note: {home}/owsd has values of another owsd {service.name}, which ended" in said, said
+    assert f"    owsctl remove {service.name}\n" in said, said
     until(lambda: watch.log().endswith("False\n"), 20, "an open handle stays where it was")
     own = scene.start(command)
     until(lambda: served_by(own), 20, "his own again")

@@ -67,6 +67,22 @@ void check_services(struct doctor *d)
 /* --- owsd ------------------------------------------------------------------------------------ */
 
 /* Two owsd of one name, of two users: each user's programs talk to another one. */
+/* What is left in this user's own place of one that ended, beside the living one of the service. */
+static void name_left(struct doctor *d, const struct shm_dir *dir)
+{
+	char ago[WHEN_TEXT];
+	struct instance_info info;
+
+	instance_look(dir, d->instance, d->now_ns, &info);
+	if (info.state != INSTANCE_STOPPED && info.state != INSTANCE_KILLED)
+		return;
+	report_add(&d->found, BOARD_NOTE,
+	           "%s has values of another owsd %s, which ended %s ago: a program that finds "
+	           "them alone sees no living one",
+	           dir->path, d->instance, when_span(d->now_ns - info.since_ns, ago));
+	report_command(&d->found, "owsctl remove %s", d->instance);
+}
+
 static void check_twins(struct doctor *d)
 {
 	char paths[DIRS][DIR_PATH];
@@ -78,7 +94,10 @@ static void check_twins(struct doctor *d)
 
 		if (dir_open(paths[i], &dir))
 			continue;
-		up += instance_runs(&dir, d->instance, &pid[i]);
+		if (instance_runs(&dir, d->instance, &pid[i]))
+			up++;
+		else if (i == 0)
+			name_left(d, &dir);
 		dir_close(&dir);
 	}
 	if (up < 2)
