@@ -357,11 +357,29 @@ func (m *image) name(record uint32) string {
 	return m.text(u32(m.info(record), 0))
 }
 
-func (m *image) printSignal(record uint32, now int64) {
+// What is read of a signal. The value is to be used only where quality&0xc0 is 0xc0.
+type reading struct {
+	kind, value string
+	quality     byte
+	age         time.Duration
+	err         int32
+	count       uint32
+	detail      byte // 1: simulated
+}
+
+// By name, for a program of one's own; false: there is no such signal, or owsd died in it.
+func (m *image) get(name string) (reading, bool) {
+	record := m.find(name)
+	if m.name(record) == "" {
+		return reading{}, false
+	}
+	return m.read(record, bootTime())
+}
+
+func (m *image) read(record uint32, now int64) (reading, bool) {
 	slot, text, ok := m.slot(record)
 	if !ok {
-		fmt.Printf("%s\tnot whole\n", m.name(record))
-		return
+		return reading{}, false
 	}
 	value, quality, since := m.value(record, slot, 0), slot[28], i64(slot, 8)
 	if m.kind(record) == typeString {
@@ -380,8 +398,21 @@ func (m *image) printSignal(record uint32, now int64) {
 			quality = qualityStale
 		}
 	}
-	fmt.Printf("%s\t%s\t%s\t0x%02x\t%.3f\t%d\t%d\t%d\n", m.name(record), typeNames[m.kind(record)],
-		value, quality, float64(age)/1e9, int32(u32(slot, 24)), u32(slot, 32), slot[29])
+	return reading{typeNames[m.kind(record)], value, quality, time.Duration(age),
+		int32(u32(slot, 24)), u32(slot, 32), slot[29]}, true
+}
+
+func (r reading) print(name string) {
+	fmt.Printf("%s\t%s\t%s\t0x%02x\t%.3f\t%d\t%d\t%d\n", name, r.kind, r.value, r.quality,
+		r.age.Seconds(), r.err, r.count, r.detail)
+}
+
+func (m *image) printSignal(record uint32, now int64) {
+	if r, ok := m.read(record, now); ok {
+		r.print(m.name(record))
+	} else {
+		fmt.Printf("%s\tnot whole\n", m.name(record))
+	}
 }
 
 func (m *image) printAll() {
@@ -493,13 +524,12 @@ func main() {
 	case flag.NArg() == 0:
 		m.printAll()
 	}
-	now := bootTime()
 	for _, name := range flag.Args() {
-		record := m.find(name)
-		if m.name(record) == "" {
+		r, ok := m.get(name)
+		if !ok {
 			fmt.Fprintln(os.Stderr, "no signal", name)
 			os.Exit(1)
 		}
-		m.printSignal(record, now)
+		r.print(name)
 	}
 }
