@@ -26,7 +26,8 @@ def start(scene):
     config = owsdtest.rio(server.target, [
         dict(Name="room", Path=sensor + "/temperature", Type="double", IO="input"),
         dict(Name="relays", Path=sensor + "/templow", Type="byte", IO="output"),
-        dict(Name="back", Path=sensor + "/templow", Type="byte", IO="input"),
+        # no byte: past its cache a mock answers any number, and what has no good value is asked so again
+        dict(Name="back", Path=sensor + "/templow", Type="double", IO="input"),
     ], Period=0.02)
     daemon = scene.owsd(config)
     daemon.restore = lambda: server.write(sensor + "/temperature", "21")
