@@ -235,7 +235,8 @@ def test_a_command_that_waited_for_a_descriptor_of_the_page_moves_nothing(scene)
 
 # --- The served protocol --------------------------------------------------------------------------
 
-PIO = f"/{SWITCH}/PIO.BYTE"
+# A device's property that sets no output of the table
+PIO = f"/{SWITCH}/PIO.1"
 
 
 def served_case(unix, gives_up, path):
