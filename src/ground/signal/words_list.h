@@ -16,50 +16,47 @@
 
 /* clang-format off */
 QUALITY(NO_PROPERTY, FAILURE, "no such property", "The device has no property of that name.",
-        "Look for a typing error in the path after the device. \"owsctl dir\" lists what the "
-        "device has.")
+        "Check the spelling of the path. \"owsctl dir\" lists what the device has.")
 QUALITY(TYPE, FAILURE, "wrong type",
-        "The property exists, and the type of the signal does not fit it.",
-        "Take the type that the log names; for lists (.ALL) and texts take string.")
+        "The type of the signal does not fit the property.",
+        "Take the type that the log names. Lists (.ALL) and texts take string.")
 QUALITY(ACCESS, FAILURE, "access refused",
         "The property is read-only or write-only, or owsd has no permission.",
-        "Make the item an input, or an output without Readable. For permissions look at the "
-        "owserver's option readonly and at the rights of the files of the kernel.")
+        "Make the item an input, or an output without Readable. Else look at the owserver's "
+        "option readonly, or the rights of the kernel's files.")
 QUALITY(NO_DEVICE, FAILURE, "device absent", "The device does not answer on its wire.",
-        "Does \"owsctl scan\" list the id? Compare it with the path of the signal. Check ground, "
-        "data and the pull-up.")
+        "Does \"owsctl scan\" list the id? Compare it with the path. Check ground, data and the "
+        "pull-up.")
 QUALITY(DEVICE, FAILURE, "device error",
-        "The device answers too late, or what cannot be true: a checksum fails, or the number is "
-        "out of the chip's range; or it reports a fault itself.",
+        "The answer is late, fails its checksum or is out of the chip's range, or the device "
+        "reports a fault.",
         "Look for a bad contact, a long wire without enough pull-up, or noise. \"owsctl read\" of "
-        "the same path shows the answer.")
+        "the path shows the answer.")
 QUALITY(SENSOR, FAILURE, "sensor power fault",
-        "The answer is that of a sensor without supply: a thermometer reads 85 or 127.94 °C.",
-        "Check its supply line. Parasite power over a long wire needs a strong pull-up.")
+        "The sensor answers as one without supply: a thermometer reads 85 or 127.94 °C.",
+        "Check its supply. Parasite power over a long wire needs a strong pull-up.")
 QUALITY(STALE, FAILURE, "stale", "No newer value came within StaleAfter.",
-        "Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold it "
-        "back.")
+        "Is the target up? _ReadEnable or PerFactor may hold the signal back.")
 QUALITY(TARGET, FAILURE, "target down",
-        "The target does not answer, or one of several bridge chips does not answer.",
-        "Does owserver run, and is its port right? Is the bridge chip at its address? owsd tries "
-        "again by itself, and the signals come back.")
-QUALITY(SHORT, FAILURE, "wire short", "The data line of the wire is held at ground.",
-        "Look for a short between data and ground; unplug branches until the wire lives again.")
+        "The target, or one of its bridge chips, does not answer.",
+        "Does owserver run at that port? Is the bridge chip at its address? owsd tries again by "
+        "itself.")
+QUALITY(SHORT, FAILURE, "wire short", "The data line is held at ground.",
+        "Unplug branches until the wire lives again.")
 QUALITY(NO_OWSD, CHECK, "owsd not running",
-        "owsd has ended or hangs: no heartbeat of it comes.",
-        "Does the service run: systemctl status owsd@*? The values are back when owsd is.")
+        "owsd has ended or hangs.",
+        "Does the service run: systemctl status owsd@*?")
 QUALITY(DIFFERS, FAILURE, "not as commanded", "The output reads otherwise than it was written.",
-        "Did the device lose its supply, or did another program switch it? Set it again; Restore "
-        "in the configuration does it by itself.")
+        "Did the device lose its supply, or did another program switch it? Set it again, or let "
+        "Restore do so.")
 QUALITY(INITIAL, CHECK, "initial", "The signal was never read or written.",
         "An input has its first value soon. Set an output, or give it an InitValue.")
 QUALITY(LAST_USABLE, CHECK, "last usable value",
-        "Reading is disabled, another target has not answered yet, what is read jumps beyond MaxStep "
-        "each time, or an output was neither read nor written since its target or its device was "
-        "away.",
+        "Reading is disabled, another target has not answered yet, readings jump beyond MaxStep, "
+        "or an output was not read or written since its target or its device was away.",
         "Wait for the new target, set _ReadEnable to 1, or raise MaxStep; set the output, or give it "
         "ReadBack.")
-QUALITY(RANGE, OFF_SPEC, "out of range", "The value is beyond Min or Max of the configuration.",
+QUALITY(RANGE, OFF_SPEC, "out of range", "The value is beyond Min or Max.",
         "Is the sensor or its wire broken? Else correct Min and Max.")
 QUALITY(LOW, OFF_SPEC, "at lower limit",
         "The value is held at the lower end of its type or of Points.",
@@ -67,17 +64,16 @@ QUALITY(LOW, OFF_SPEC, "at lower limit",
 QUALITY(HIGH, OFF_SPEC, "at upper limit",
         "The value is held at the upper end of its type or of Points.",
         "Take a wider type, or continue Points.")
-QUALITY(CUT, OFF_SPEC, "cut", "The text is longer than the room that it has.", "Read a part of it.")
+QUALITY(CUT, OFF_SPEC, "cut", "The text is longer than its room.", "Read a part of it.")
 
 /* What a device reports by itself. */
-ALARM(DEVICE, RAISED, "device alarm", "The device itself reports it: what it watches has happened.",
-      "Look at what the device watches. The alarm ends when owsd can clear its latch.")
+ALARM(DEVICE, RAISED, "device alarm", "What the device watches has happened.",
+      "Look at what it watches. The alarm ends when owsd can clear its latch.")
 ALARM(DEVICE, FAILED, "device alarm does not work",
-      "Until that is corrected the device's own alarm does not come.",
-      "\"owsctl alarms\" names the key and the reason, the log the property; correct it in the "
-      "file.")
-ALARM(POR, RAISED, "power-on reset", "The device has lost its power, and has started again.",
-      "Look at its supply and its contacts if it comes again. owsd writes its outputs again.")
+      "The device's own alarm does not come.",
+      "Correct the key that \"owsctl alarms\" names. The log has the property.")
+ALARM(POR, RAISED, "power-on reset", "The device lost its power and started again.",
+      "If it comes again look at supply and contacts. owsd writes the outputs again.")
 
 /* What a path can be wrong in. */
 ERROR(ENODEV, "no such device there",

@@ -66,8 +66,8 @@ static void test_an_alarm_that_is_bad_has_no_number(void)
 	message_alarm(&entry, &info, &bad, &now);
 	TEST_ASSERT_EQUAL_STRING("freezer bad: device absent; since 2023-11-14T22:13:19; The "
 	                         "device does not answer on its wire. Does \"owsctl scan\" list "
-	                         "the id? Compare it with the path of the signal. Check ground, "
-	                         "data and the pull-up.",
+	                         "the id? Compare it with the path. Check ground, data and the "
+	                         "pull-up.",
 	                         entry.text);
 }
 
@@ -103,9 +103,8 @@ static void test_an_alarm_of_a_device_says_where_it_is_what_it_means_and_what_to
 	message_alarm(&entry, &info, &own, &now);
 	TEST_ASSERT_EQUAL_STRING(
 		"door device alarm: 1; its latch reads 2; since 2023-11-14T22:13:19; DS2406 "
-		"12.000000000001; Entrance; Behind the shed; The device itself reports it: what it "
-		"watches has happened. Look at what the device watches. The alarm ends when owsd "
-		"can clear its latch.",
+		"12.000000000001; Entrance; Behind the shed; What the device watches has "
+		"happened. Look at what it watches. The alarm ends when owsd can clear its latch.",
 		entry.text);
 	TEST_ASSERT_EQUAL_UINT8(OWS_ALARM_DEVICE, entry.kind);
 
@@ -130,8 +129,8 @@ static void test_an_alarm_of_a_device_that_does_not_work_says_why(void)
 	message_alarm(&entry, &info, &fails, &now);
 	TEST_ASSERT_EQUAL_STRING_LEN("freezer device alarm does not work: cannot be armed: "
 	                             "SetAlarm: no permission; since 2023-11-14T22:13:19; In the "
-	                             "cellar; Until that is corrected",
-	                             entry.text, 138);
+	                             "cellar; The device's own alarm",
+	                             entry.text, 137);
 	TEST_ASSERT_EQUAL_UINT8(0, entry.kind);
 }
 

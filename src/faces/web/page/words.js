@@ -6,58 +6,54 @@ const QUALITIES = new Map([
 // from src/ground/signal/words_list.h
 	[0x04, ["no such property",
 		"The device has no property of that name.",
-		"Look for a typing error in the path after the device. \u201cowsctl dir\u201d lists "
-		+ "what the device has."]],
+		"Check the spelling of the path. \u201cowsctl dir\u201d lists what the device has."]],
 	[0x05, ["wrong type",
-		"The property exists, and the type of the signal does not fit it.",
-		"Take the type that the log names; for lists (.ALL) and texts take string."]],
+		"The type of the signal does not fit the property.",
+		"Take the type that the log names. Lists (.ALL) and texts take string."]],
 	[0x06, ["access refused",
 		"The property is read-only or write-only, or owsd has no permission.",
-		"Make the item an input, or an output without Readable. For permissions look at the "
-		+ "owserver\u2019s option readonly and at the rights of the files of the kernel."]],
+		"Make the item an input, or an output without Readable. Else look at the "
+		+ "owserver\u2019s option readonly, or the rights of the kernel\u2019s files."]],
 	[0x08, ["device absent",
 		"The device does not answer on its wire.",
-		"Does \u201cowsctl scan\u201d list the id? Compare it with the path of the signal. "
-		+ "Check ground, data and the pull-up."]],
+		"Does \u201cowsctl scan\u201d list the id? Compare it with the path. Check ground, "
+		+ "data and the pull-up."]],
 	[0x0c, ["device error",
-		"The device answers too late, or what cannot be true: a checksum fails, or the number "
-		+ "is out of the chip\u2019s range; or it reports a fault itself.",
+		"The answer is late, fails its checksum or is out of the chip\u2019s range, or the "
+		+ "device reports a fault.",
 		"Look for a bad contact, a long wire without enough pull-up, or noise. \u201cowsctl "
-		+ "read\u201d of the same path shows the answer."]],
+		+ "read\u201d of the path shows the answer."]],
 	[0x10, ["sensor power fault",
-		"The answer is that of a sensor without supply: a thermometer reads 85 or 127.94 "
-		+ "\u00b0C.",
-		"Check its supply line. Parasite power over a long wire needs a strong pull-up."]],
+		"The sensor answers as one without supply: a thermometer reads 85 or 127.94 \u00b0C.",
+		"Check its supply. Parasite power over a long wire needs a strong pull-up."]],
 	[0x14, ["stale",
 		"No newer value came within StaleAfter.",
-		"Is the target up, and is the signal read at all? _ReadEnable or PerFactor may hold "
-		+ "it back."]],
+		"Is the target up? _ReadEnable or PerFactor may hold the signal back."]],
 	[0x18, ["target down",
-		"The target does not answer, or one of several bridge chips does not answer.",
-		"Does owserver run, and is its port right? Is the bridge chip at its address? owsd "
-		+ "tries again by itself, and the signals come back."]],
+		"The target, or one of its bridge chips, does not answer.",
+		"Does owserver run at that port? Is the bridge chip at its address? owsd tries again "
+		+ "by itself."]],
 	[0x19, ["wire short",
-		"The data line of the wire is held at ground.",
-		"Look for a short between data and ground; unplug branches until the wire lives "
-		+ "again."]],
+		"The data line is held at ground.",
+		"Unplug branches until the wire lives again."]],
 	[0x1a, ["owsd not running",
-		"owsd has ended or hangs: no heartbeat of it comes.",
-		"Does the service run: systemctl status owsd@*? The values are back when owsd is."]],
+		"owsd has ended or hangs.",
+		"Does the service run: systemctl status owsd@*?"]],
 	[0x1c, ["not as commanded",
 		"The output reads otherwise than it was written.",
-		"Did the device lose its supply, or did another program switch it? Set it again; "
-		+ "Restore in the configuration does it by itself."]],
+		"Did the device lose its supply, or did another program switch it? Set it again, or "
+		+ "let Restore do so."]],
 	[0x20, ["initial",
 		"The signal was never read or written.",
 		"An input has its first value soon. Set an output, or give it an InitValue."]],
 	[0x44, ["last usable value",
-		"Reading is disabled, another target has not answered yet, what is read jumps beyond "
-		+ "MaxStep each time, or an output was neither read nor written since its target or its "
-		+ "device was away.",
+		"Reading is disabled, another target has not answered yet, readings jump beyond "
+		+ "MaxStep, or an output was not read or written since its target or its device was "
+		+ "away.",
 		"Wait for the new target, set _ReadEnable to 1, or raise MaxStep; set the output, or "
 		+ "give it ReadBack."]],
 	[0x54, ["out of range",
-		"The value is beyond Min or Max of the configuration.",
+		"The value is beyond Min or Max.",
 		"Is the sensor or its wire broken? Else correct Min and Max."]],
 	[0x55, ["at lower limit",
 		"The value is held at the lower end of its type or of Points.",
@@ -66,7 +62,7 @@ const QUALITIES = new Map([
 		"The value is held at the upper end of its type or of Points.",
 		"Take a wider type, or continue Points."]],
 	[0x58, ["cut",
-		"The text is longer than the room that it has.",
+		"The text is longer than its room.",
 		"Read a part of it."]],
 // to here
 ]);
