@@ -4,6 +4,7 @@
 
 import os
 import struct
+import subprocess
 
 import owsdtest
 
@@ -94,6 +95,24 @@ def test_auto_is_the_first_way_that_is_there_or_says_what_each_lacks(scene):
         assert "stands for several" not in first and "board: " in done.stderr, done
     else:
         assert done.stdout.startswith("PATH"), done
+
+
+def test_a_ds9490r_that_auto_leaves_to_the_kernel_is_named(scene):
+    if os.geteuid() != 0:
+        owsdtest.skip("only root may have another /sys/bus")
+    bus = scene.path / "bus"
+    (bus / "usb/devices/1-1").mkdir(parents=True)
+    (bus / "usb/devices/1-1/uevent").write_text("PRODUCT=4fa/2490/2\nDEVNAME=bus/usb/001/004\n")
+
+    def scan():
+        return subprocess.run(["unshare", "-m", "-n", "sh", "-c", 'mount --bind "$0" /sys/bus && exec "$@"', bus,
+                               owsdtest.OWSCTL, "-t", "auto", "scan"],
+                              capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
+    done = scan()
+    assert done.returncode == 1 and "; -t usb: asks the DS9490R at USB 1-1" in done.stderr, done
+    (bus / "w1/devices/w1_bus_master1").mkdir(parents=True)
+    done = scan()
+    assert "with -t usb: owsd itself drives the DS9490R at USB 1-1" in done.stderr, done
 
 
 if __name__ == "__main__":

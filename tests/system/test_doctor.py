@@ -281,5 +281,13 @@ def test_a_page_without_an_address_says_how_to_give_it_one(scene):
     assert f"page: /run/owsd/{daemon.name}.web" in said and 'Listen "127.0.0.1:8080"' in said
 
 
+def test_a_program_without_signals_is_told_where_they_come_from(scene):
+    plant = scene.file("plant.sim", BUSES + CHIPS)
+    for items, told in (([], True), ([LIVING], False)):
+        daemon = scene.owsd(owsdtest.rio(f"sim:{plant}", items))
+        said = scene.owsctl(daemon, "enable", "--dry-run", "mqtt").stdout
+        assert ("has no signals, so there is nothing to show: owsctl doctor" in said) is told, said
+
+
 if __name__ == "__main__":
     owsdtest.main()

@@ -8,6 +8,7 @@
 
 #include "hal/bus/backends.h"
 #include "hal/serial/find.h"
+#include "hal/usb/find.h"
 #include "src/config/read/config.h"
 #include "src/config/read/targets.h"
 #include "src/faces/show/when.h"
@@ -120,6 +121,7 @@ static int served_find(const struct ctl *ctl, struct served *served)
 /* --- The target ------------------------------------------------------------------------------ */
 
 #define OPEN_ASKED 256
+#define USB_DEVICES "/sys/bus/usb/devices"
 #define PROGRESS_NS (5 * NS_PER_S) /* the pause between two prints of the count of answers */
 
 /* Returns CTL_DONE; or the status, with the reason in why. */
@@ -134,23 +136,39 @@ static int open_way(struct target *target, const char *name, char *why, size_t w
 	return err == -ENOMEM || err == -ENOTCONN ? CTL_FAILED : CTL_USAGE;
 }
 
+/* auto takes no adapter away from the kernel's driver. */
+static void tell_way(const char *way)
+{
+	struct usb_place places[USB_PLACES];
+
+	if (!strcmp(way, "w1") && usb_find(USB_DEVICES, places))
+		ctl_tell("asked w1; with -t usb: owsd itself drives the DS9490R at USB %s",
+		         places[0].name);
+}
+
 /* Open the first way that works, as owsd does. */
 static int open_auto(struct target *target, char *why, size_t why_size)
 {
 	size_t used = (size_t)snprintf(why, why_size, "auto finds nothing");
 	const char *way, *between = ": ";
+	struct usb_place places[USB_PLACES];
 	char port[200];
 
 	for (unsigned row = 0; (way = config_auto_way(&row)); between = "; ") {
 		char reason[200] = "";
 		int n;
 
-		if (open_way(target, way, reason, sizeof(reason)) == 0)
+		if (open_way(target, way, reason, sizeof(reason)) == 0) {
+			tell_way(way);
 			return CTL_DONE;
+		}
 		n = snprintf(why + used, why_size - used, "%s%s", between, reason);
 		used = n < 0 || (size_t)n >= why_size - used ? why_size - 1 : used + (size_t)n;
 	}
-	if (tty_only(SERIAL_NAMES, port, sizeof(port)))
+	if (usb_find(USB_DEVICES, places))
+		snprintf(why + used, why_size - used, "; -t usb: asks the DS9490R at USB %s",
+		         places[0].name);
+	else if (tty_only(SERIAL_NAMES, port, sizeof(port)))
 		snprintf(why + used, why_size - used,
 		         "; auto opens no serial port: is an adapter at -t serial:%s ?", port);
 	return CTL_FAILED;

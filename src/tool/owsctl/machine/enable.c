@@ -117,6 +117,9 @@ static void say_where(const struct change *change)
 	const char *program = change->row->program, *instance = change->ctl->instance;
 	char addresses[400];
 
+	if (!change->config->item_count)
+		printf("%s has no signals, so there is nothing to show: owsctl doctor\n",
+		       change->config->file);
 	if (!face_has_block(change->config, program))
 		printf("%s has no block for %s: %s(8) says what it may have\n",
 		       change->config->file, program, program);

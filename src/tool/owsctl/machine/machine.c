@@ -12,6 +12,7 @@
 #include "hal/bus/backends.h"
 #include "hal/bus/bus.h"
 #include "hal/serial/find.h"
+#include "hal/usb/find.h"
 #include "src/config/check/check.h"
 #include "src/config/read/load.h"
 #include "src/config/read/report.h"
@@ -189,14 +190,33 @@ static void check_port(struct doctor *d, const char *target)
 	}
 }
 
-/* Nobody but a person knows whether there is a 1-Wire adapter at it: auto opens no serial port. */
-static void advise_port(struct doctor *d, const char *port)
+/*
+ * The target of an adapter that auto does not open: a DS9490R that no driver has, else the one serial
+ * port, of which nobody but a person knows what is at it. "": there is none.
+ */
+static void left_by_auto(const struct doctor *d, char target[PORT_TEXT + 8])
 {
+	char devices[DOCTOR_ROOT + 24], port[PORT_TEXT];
+	struct usb_place places[USB_PLACES];
+
+	snprintf(devices, sizeof(devices), "%s/sys/bus/usb/devices", d->root);
+	find_port(d, port);
+	if (usb_find(devices, places) && !*places[0].driver)
+		snprintf(target, PORT_TEXT + 8, "usb:");
+	else
+		snprintf(target, PORT_TEXT + 8, "%s%s", *port ? "serial:" : "", port);
+}
+
+static void advise_adapter(struct doctor *d, const char *target)
+{
+	const char *port = strchr(target, ':') + 1;
 	char load[UNITS_COMMAND];
 
 	report_add(&d->found, BOARD_MISSING,
-	           "%s is plugged in, and auto opens no serial port: it may be a modem's", port);
-	report_remedy(&d->found, "write TargetName \"serial:%s\" into %s, then: %s", port, d->file,
+	           *port ? "%s is plugged in, and auto opens no serial port: it may be a modem's"
+	                 : "%sa DS9490R is plugged in, and auto opens no USB adapter",
+	           port);
+	report_remedy(&d->found, "write TargetName \"%s\" into %s, then: %s", target, d->file,
 	              units_load_command(d, load));
 }
 
@@ -204,20 +224,20 @@ void check_board(struct doctor *d)
 {
 	bool needed = lacks(d, needs_board), used = false;
 	struct ows_target target;
-	char port[PORT_TEXT];
+	char left[PORT_TEXT + 8];
 
 	for (unsigned n = 0; target_at(d, n, &target); n++) {
 		used |= needs_board(target.name) && target.state == 1;
 		if (needs_port(target.name))
 			check_port(d, target.name);
 	}
-	find_port(d, port);
+	left_by_auto(d, left);
 	if (needed && seen_automatic(d)) {
 		/* an owserver is a way, too: one that does not run is reported as a target */
 		needed = d->alive ? !seen_owserver_stopped(d, OWSERVER) : !seen_owserver(d->root);
-		if (needed && *port && d->config)
-			advise_port(d, port);
-		needed = needed && !*port;
+		if (needed && *left && d->config)
+			advise_adapter(d, left);
+		needed = needed && !*left;
 	}
 	used |= needed;
 	for (unsigned i = 0; i < d->board.count; i++) {
@@ -313,14 +333,11 @@ void check_rights(struct doctor *d)
 /* That of the file, else what is there. */
 static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8])
 {
-	char port[PORT_TEXT];
-	bool serial;
-
-	find_port(d, port);
 	if (d->config && d->config->target_count && !seen_automatic(d))
 		return d->config->targets[0].text;
-	serial = *port && d->board.missing && !seen_owserver(d->root);
-	snprintf(text, PORT_TEXT + 8, "%s%s", serial ? "serial:" : "auto", serial ? port : "");
+	left_by_auto(d, text);
+	if (!*text || seen_owserver(d->root) || (strcmp(text, "usb:") != 0 && !d->board.missing))
+		snprintf(text, PORT_TEXT + 8, "auto");
 	return text;
 }
 
