@@ -17,6 +17,8 @@ import time
 
 import owsdtest
 
+os.environ["OWSD_BOARDS"] = str(owsdtest.SOURCE / "board" / "boards")
+
 PTRACE_TRACEME, PTRACE_SYSCALL, PTRACE_SETOPTIONS, PTRACE_GET_SYSCALL_INFO = 0, 24, 0x4200, 0x420E
 PTRACE_O_TRACESYSGOOD = 1
 # The numbers of write, fsync, and of all that rename
@@ -319,6 +321,10 @@ def test_an_edit_of_the_file_of_a_running_owsd_says_how_it_is_loaded(scene):
     hint = f"owsctl: owsd {daemon.name} goes on as before until you run: owsctl -n {daemon.name} reload\n"
     assert said(file, "rename", "x", "kitchen") == hint
     assert said(file, "unset", "kitchen", "Unit") == hint
+    # a block of a program beside it is read by that one
+    hint = f"owsctl: owsd-mqtt goes on as before until you run: sudo owsctl -n {daemon.name} enable mqtt\n"
+    assert said(file, "set", "Mqtt", "Write=on") == hint
+    assert said(file, "unset", "Mqtt", "Write") == hint
     assert said(other, "rename", "x", "kitchen") == ""
     assert said(file, "list") == ""
     assert scene.owsctl(daemon, "reload").returncode == 0

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* owsctl config: look at a configuration file and edit it as the manual's dialog does. */
+#include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,7 @@
 #include "src/ground/text/distance.h"
 #include "src/memory/shm/segment.h"
 #include "src/tool/owsctl/ctl.h"
+#include "src/tool/owsctl/machine/faces.h"
 #include "src/tool/owsctl/running.h"
 #include "src/tool/owsctl/table.h"
 #include "src/tool/owsctl/verbs.h"
@@ -281,18 +283,35 @@ static const char *const *words_of(char **argv)
 	return (const char *const *)(void *)argv;
 }
 
-/* A running owsd does not notice the change by itself. */
-static void hint_at_reload(const char *file)
+/* The program that reads the block; NULL: owsd does. */
+static const struct face_row *reader_of(const char *block, struct face_row rows[FACE_ROWS])
 {
-	char name[SEGMENT_NAME_MAX + 1];
-	bool usual;
+	char word[sizeof(rows->program)];
+
+	if (!isupper((unsigned char)*block))
+		return NULL;
+	snprintf(word, sizeof(word), "%c%.20s", tolower((unsigned char)*block), block + 1);
+	return faces_find(rows, faces_table(rows), word);
+}
+
+/* Who runs does not notice the change by itself. */
+static void hint_at_reload(const char *file, const char *changed)
+{
+	struct face_row rows[FACE_ROWS];
+	const struct face_row *face = reader_of(changed, rows);
+	char name[SEGMENT_NAME_MAX + 1], instance[SEGMENT_NAME_MAX + 5] = "";
 
 	if (!instance_of_file(file, name))
 		return;
-	usual = !strcmp(name, "OWS");
-	ctl_tell("owsd %s goes on as before until you run: %sowsctl %s%s%sreload", name,
-	         strncmp(file, CONFIG_DIR "/", strlen(CONFIG_DIR "/")) ? "" : "sudo ",
-	         usual ? "" : "-n ", usual ? "" : name, usual ? "" : " ");
+	if (strcmp(name, "OWS") != 0)
+		snprintf(instance, sizeof(instance), "-n %s ", name);
+	if (face)
+		ctl_tell("%s goes on as before until you run: sudo owsctl %senable %s",
+		         face->program, instance, face->program + strlen("owsd-"));
+	else
+		ctl_tell("owsd %s goes on as before until you run: %sowsctl %sreload", name,
+		         strncmp(file, CONFIG_DIR "/", strlen(CONFIG_DIR "/")) ? "" : "sudo ",
+		         instance);
 }
 
 static int change_file(const char *file, const char *action, char **words, unsigned count)
@@ -324,7 +343,7 @@ static int change_file(const char *file, const char *action, char **words, unsig
 	rio_free(rio);
 	replace_unlock(file, lock);
 	if (!err)
-		hint_at_reload(file);
+		hint_at_reload(file, words[0]);
 	if (err == -EFBIG && !report.errors)
 		return ctl_fail("%s would be longer than %u bytes", file, RIO_FILE_MAX);
 	return status_of(err);
