@@ -191,8 +191,8 @@ static void check_port(struct doctor *d, const char *target)
 }
 
 /*
- * The target of an adapter that auto does not open: a DS9490R that no driver has, else the one serial
- * port, of which nobody but a person knows what is at it. "": there is none.
+ * The target of an adapter that auto does not open: a DS9490R that no driver has, else the one
+ * serial port, of which nobody but a person knows what is at it. "": there is none.
  */
 static void left_by_auto(const struct doctor *d, char target[PORT_TEXT + 8])
 {
