@@ -209,9 +209,10 @@ static void left_by_auto(const struct doctor *d, char target[PORT_TEXT + 8])
 
 static void advise_adapter(struct doctor *d, const char *target)
 {
-	const char *port = strchr(target, ':') + 1;
 	char load[UNITS_COMMAND];
+	const char *port;
 
+	bus_backend(target, &port);
 	report_add(&d->found, BOARD_MISSING,
 	           *port ? "%s is plugged in, and auto opens no serial port: it may be a modem's"
 	                 : "%sa DS9490R is plugged in, and auto opens no USB adapter",
