@@ -105,7 +105,7 @@ int serial_exchange(struct serial_master *master, unsigned baud, const uint8_t *
 {
 	struct serial_port *port = master->port;
 	int64_t byte_ns = 10 * NS_PER_S / baud;
-	int64_t until_ns = bus_now(port->env) + byte_ns * (int64_t)(out_n + n) + LATE_NS;
+	int64_t until_ns;
 	int err = serial_speed(master, baud);
 
 	master->adapter.shared.transfers++;
@@ -116,6 +116,8 @@ int serial_exchange(struct serial_master *master, unsigned baud, const uint8_t *
 	if (!err && n)
 		err = adapter_wait(&master->adapter,
 		                   byte_ns * (int64_t)out_n + master->kind->lag_ns + ARRIVE_NS);
+	/* from now on: on a busy machine the calls above may have taken longer than that */
+	until_ns = bus_now(port->env) + byte_ns * (int64_t)n + LATE_NS;
 	while (!err && *got < n) {
 		int came = port->ops->read(port, in + *got, n - *got, until_ns);
 

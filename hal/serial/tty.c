@@ -90,6 +90,8 @@ static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t 
 	const struct bus_env *env = port->env;
 
 	for (;;) {
+		/* first, or what comes between the look and the clock of a busy machine is missed */
+		bool late = bus_now(env) >= until_ns;
 		ssize_t came = read(tty_of(port)->fd, bytes, n);
 
 		port->cost->syscalls++;
@@ -101,12 +103,10 @@ static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t 
 			return -ENODEV;
 		if (errno != EAGAIN && errno != EINTR)
 			return gone(errno);
-		if (bus_now(env) >= until_ns)
+		if (late)
 			return 0;
-		int ready = env->wait(env->ctx, tty_of(port)->fd, POLLIN, until_ns);
-
-		if (ready <= 0)
-			return ready;
+		if (env->wait(env->ctx, tty_of(port)->fd, POLLIN, until_ns) < 0)
+			return -ECANCELED;
 	}
 }
 

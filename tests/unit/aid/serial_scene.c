@@ -33,6 +33,7 @@ static int set_speed(struct serial_port *port, unsigned baud)
 static int port_write(struct serial_port *port, const uint8_t *bytes, size_t n)
 {
 	serial.writes++;
+	serial.host.now += serial.late_ns;
 	serial.written_ns = clock_ns(CLOCK_MONOTONIC);
 	if (serial.full)
 		return -ETIMEDOUT;

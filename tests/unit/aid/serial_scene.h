@@ -15,6 +15,7 @@ struct serial_scene {
 	uint64_t pull_at; /* the adapter is pulled after so many bytes; 0: never */
 	bool pulled, deaf_to_break;
 	bool babbles, full;            /* something comes all the time; nothing is taken */
+	int64_t late_ns;               /* the machine is busy: each write begins so late */
 	unsigned no_speed;             /* the port cannot have this one; 0: it can have all */
 	int64_t written_ns, closed_ns; /* by the machine's clock */
 	const char *proc;              /* where other programs are looked for: at /dev/null */

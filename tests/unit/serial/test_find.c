@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/serial.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -302,6 +303,34 @@ static void test_two_targets_do_not_share_a_port(void)
 	TEST_ASSERT_EQUAL_INT(0, try_open());
 }
 
+/* The thread sleeps over the deadline, and a byte has come when it goes on. */
+static int64_t sleep_over(void *ctx)
+{
+	struct pollfd there = {.events = POLLIN};
+	char tty[64];
+
+	(void)ctx;
+	for (there.fd = 3; there.fd < 256; there.fd++)
+		if (there.fd != adapter[0] && ttyname_r(there.fd, tty, sizeof(tty)) == 0 &&
+		    strcmp(tty, ptsname(adapter[0])) == 0)
+			break;
+	TEST_ASSERT_EQUAL_INT(1, write(adapter[0], "x", 1));
+	TEST_ASSERT_EQUAL_INT(1, poll(&there, 1, 10000));
+	return HOST_S;
+}
+
+static void test_what_came_while_a_busy_machine_let_nobody_look_is_read_after_the_deadline(void)
+{
+	uint8_t byte = 0;
+
+	make(ptsname(adapter[0]));
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, try_open(), why);
+	TEST_ASSERT_EQUAL_INT(0, port->ops->speed(port, 115200));
+	host.env.now = sleep_over;
+	TEST_ASSERT_EQUAL_INT(1, port->ops->read(port, &byte, 1, HOST_S));
+	TEST_ASSERT_EQUAL_HEX8('x', byte);
+}
+
 static void test_bytes_go_both_ways_untouched_and_a_read_has_a_deadline(void)
 {
 	static const uint8_t bytes[] = {0x03, 0x0A, 0x0D, 0x11, 0x13, 0x1A, 0x7F, 0xFF, 0x00};
@@ -407,6 +436,7 @@ int main(void)
 	RUN_TEST(test_of_two_equal_adapters_each_is_found_where_it_is);
 	RUN_TEST(test_an_adapter_that_may_be_another_is_reported_once_with_both_names);
 	RUN_TEST(test_two_targets_do_not_share_a_port);
+	RUN_TEST(test_what_came_while_a_busy_machine_let_nobody_look_is_read_after_the_deadline);
 	RUN_TEST(test_bytes_go_both_ways_untouched_and_a_read_has_a_deadline);
 	RUN_TEST(test_a_port_is_set_whatever_it_was_and_is_ours_alone);
 	RUN_TEST(test_a_port_that_takes_nothing_more_is_an_error_in_time);

@@ -51,6 +51,20 @@ static void test_a_short_and_nobody_are_told_apart(void)
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
 }
 
+static void test_an_echo_of_what_a_busy_machine_sent_late_is_not_taken_for_a_missing_one(void)
+{
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	serial.late_ns = 10 * HOST_S;
+	serial_check("t");
+	serial.late_ns = 0;
+	serial.sim.silent = true;
+	uint8_t scratchpad[9];
+	int64_t begun_ns = serial.host.now;
+
+	TEST_ASSERT_EQUAL_INT(-ETIMEDOUT, serial_scratchpad("t", scratchpad));
+	TEST_ASSERT_LESS_THAN_INT64(begun_ns + HOST_S, serial.host.now);
+}
+
 /* All of the wire: how many devices, and how often something was written. */
 static unsigned round_of(bool alarm, unsigned *writes)
 {
@@ -313,6 +327,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_reading_is_a_reset_and_slots);
+	RUN_TEST(test_an_echo_of_what_a_busy_machine_sent_late_is_not_taken_for_a_missing_one);
 	RUN_TEST(test_a_short_and_nobody_are_told_apart);
 	RUN_TEST(test_a_search_is_one_exchange_for_each_bit_and_one_in_all_for_a_known_id);
 	RUN_TEST(test_a_search_that_leads_elsewhere_than_it_did_goes_on_bit_by_bit);
