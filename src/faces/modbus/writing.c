@@ -48,30 +48,41 @@ enum exception writing_refusal(int err)
 	}
 }
 
-static int64_t longest_delay_ns(const struct config *config)
+/* For how long may it still be silent until owsd may have lost it? */
+static int64_t left_ns(const struct writer *writer)
 {
-	int64_t longest_ns = 0;
-
-	for (size_t i = 0; i < config->item_count; i++)
-		longest_ns = later_ns(longest_ns, config->items[i].safe_delay_ns);
-	return longest_ns;
+	return writer->heard_ns + writer->promised_ns + COMMAND_OLD_NS - clock_ns(CLOCK_MONOTONIC);
 }
 
 /*
- * For how long may it still be silent until owsd has lost it? Then its outputs are at SafeValue,
- * and the goodbye of a way that is closed leaves none in force.
+ * Is a command of it in force that SafeValue has still to replace? owsd alone knows: it counts no
+ * time in which it did not run, and a goodbye before it is done would leave the command in force.
  */
-static int64_t left_ns(const struct writing *w, const struct writer *writer)
+static bool commands_still(const struct writing *w, const struct writer *writer)
 {
-	return writer->heard_ns + NS_PER_S +
-	       later_ns(writer->promised_ns, longest_delay_ns(w->face->config)) -
-	       clock_ns(CLOCK_MONOTONIC);
+	const struct config *config = w->face->config;
+	struct ows *ows = w->face->ows;
+	char person[WRITING_PERSON];
+	bool still = !w->face->live;
+
+	writing_person(&writer->from, person);
+	for (size_t i = 0; i < config->item_count && !still; i++) {
+		struct ows_origin origin;
+		int err = -ENOENT;
+
+		if (config->items[i].has_safe)
+			err = ows_origin(ows, ows_find(ows, config->items[i].name), &origin);
+		still = err ? err != -ENOENT
+		            : origin.reason != OWS_REASON_SAFE &&
+		                        !strcmp(origin.who.person, person);
+	}
+	return still;
 }
 
 /* One without a promise is not lost, and leaves its commands. */
 static bool is_spare(const struct writing *w, const struct writer *writer)
 {
-	return !writer->promised_ns || left_ns(w, writer) < 0;
+	return !writer->promised_ns || (left_ns(writer) < 0 && !commands_still(w, writer));
 }
 
 /* The one that was silent for longest of those that need no place. NULL: all do. */
@@ -255,7 +266,7 @@ int64_t writing_tick(struct writing *w, int64_t now_ns)
 			face_way_close(&writer->way);
 			writer->promised_ns = writer->way.open_ns = 0;
 		} else {
-			next_ns = earlier_ns(next_ns, now_ns + left_ns(w, writer) + NS_PER_MS);
+			next_ns = earlier_ns(next_ns, now_ns + later_ns(left_ns(writer), NS_PER_S));
 		}
 	}
 	return next_ns;

@@ -2,11 +2,13 @@
 /* Tests of what clients may command, and of how they are called. */
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "unity.h"
 
 #include "src/faces/modbus/writing.h"
+#include "src/memory/shm/entries.h"
 #include "tests/unit/aid/instance.h"
 
 #define S INSTANCE_S
@@ -24,6 +26,7 @@ static const struct face_ops ops = {.program = "owsd-modbus"};
 static struct face face;
 static struct writing w;
 static struct listen_address plc, other;
+static struct config_item safe = {.name = "pump", .has_safe = true};
 
 void setUp(void)
 {
@@ -37,6 +40,7 @@ void setUp(void)
 	arguments.instance = in.name;
 	face = (struct face){.ops = &ops, .arguments = &arguments, .config = &config};
 	face.log = log_create(LOG_LEVEL_ERR);
+	face.live = ows_open(in.name, OWS_READ, &face.ows) == 0;
 	w = (struct writing){.face = &face};
 	TEST_ASSERT_EQUAL_INT(1, listen_parse("10.0.0.5:4000", 13, both, &why));
 	plc = both[0];
@@ -48,8 +52,20 @@ void tearDown(void)
 {
 	for (unsigned i = 0; i < WRITERS; i++)
 		face_way_close(&w.writers[i].way);
+	ows_close(face.ows);
 	log_destroy(face.log);
 	instance_end(&in);
+}
+
+/* The command of the pump is in force, as owsd has it. */
+static void in_force(const char *person, enum ows_reason reason)
+{
+	struct ows_origin_entry entry = {.reason = (uint32_t)reason, .taken_ns = ows_now()};
+
+	snprintf(entry.who.person, sizeof(entry.who.person), "%s", person);
+	image_origin(&in.image, PUMP, &entry);
+	config.items = &safe;
+	config.item_count = 1;
 }
 
 static enum exception set(const char *name, double number, const struct listen_address *from,
@@ -142,7 +158,6 @@ static void test_what_is_refused_is_so_by_the_exception_that_fits(void)
 
 static void test_an_address_that_owsd_has_lost_gives_its_place_to_another(void)
 {
-	struct config_item slow = {.safe_delay_ns = 20 * S};
 	struct controller_beat beat;
 
 	for (uint8_t i = 0; i < WRITERS; i++) {
@@ -151,11 +166,9 @@ static void test_an_address_that_owsd_has_lost_gives_its_place_to_another(void)
 	}
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, set("pump", 1, &plc, ows_now()));
 	w.writers[7].heard_ns -= 10 * S;
-	/* its outputs wait for SafeDelay */
-	config.items = &slow;
-	config.item_count = 1;
+	in_force("modbus:10.0.0.107", OWS_REASON_SET);
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_BUSY, set("pump", 1, &plc, ows_now()));
-	config.item_count = 0;
+	in_force("modbus:10.0.0.100", OWS_REASON_SET);
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, ows_now()));
 	TEST_ASSERT_EQUAL_UINT(WRITERS + 1, instance_controllers(&in));
 	controller_beat(instance_controller(&in, 7), &beat);
@@ -189,6 +202,29 @@ static void test_who_is_lost_is_no_controller_any_more_until_it_commands_again(v
 	TEST_ASSERT_NULL(w.writers[0].way.h);
 	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 0, &plc, ows_now()));
 	TEST_ASSERT_EQUAL_UINT(2, instance_controllers(&in));
+}
+
+/* owsd may have stood still, or wait for SafeDelay: a goodbye now would leave the pump on. */
+static void test_nobody_says_goodbye_before_owsd_has_written_safevalue(void)
+{
+	struct controller_beat beat;
+	int64_t now_ns = ows_now();
+
+	TEST_ASSERT_EQUAL_INT(EXCEPTION_NONE, set("pump", 1, &plc, now_ns));
+	w.writers[0].heard_ns -= 100 * S;
+	in_force("modbus:10.0.0.5", OWS_REASON_SET);
+	TEST_ASSERT_EQUAL_INT64(now_ns + S, writing_tick(&w, now_ns));
+	in_force("modbus:10.0.0.5", OWS_REASON_RETURNED);
+	TEST_ASSERT_EQUAL_INT64(now_ns + S, writing_tick(&w, now_ns));
+	in_force("modbus:10.0.0.5", OWS_REASON_SAFE);
+	face.live = false;
+	TEST_ASSERT_EQUAL_INT64(now_ns + S, writing_tick(&w, now_ns));
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_FALSE(beat.goodbye);
+	face.live = true;
+	TEST_ASSERT_EQUAL_INT64(INT64_MAX, writing_tick(&w, now_ns));
+	controller_beat(instance_controller(&in, 0), &beat);
+	TEST_ASSERT_TRUE(beat.goodbye);
 }
 
 static void test_a_number_has_to_fit_before_any_is_set(void)
@@ -272,6 +308,7 @@ int main(void)
 	RUN_TEST(test_what_is_refused_is_so_by_the_exception_that_fits);
 	RUN_TEST(test_an_address_that_owsd_has_lost_gives_its_place_to_another);
 	RUN_TEST(test_who_is_lost_is_no_controller_any_more_until_it_commands_again);
+	RUN_TEST(test_nobody_says_goodbye_before_owsd_has_written_safevalue);
 	RUN_TEST(test_a_number_has_to_fit_before_any_is_set);
 	RUN_TEST(test_what_owsd_refuses_leaves_all_else_of_the_request_as_it_is);
 	RUN_TEST(test_a_client_may_what_the_configuration_says);
