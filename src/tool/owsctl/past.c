@@ -77,39 +77,54 @@ int past_look(const struct ctl *ctl, const char *directory, struct ows_history *
 	return CTL_DONE;
 }
 
-/* The recorder may not have written yet what owsd calls so now. */
-static int find_live(struct ows_history *h, const char *instance, const char *name)
+/*
+ * Does owsd call a signal so now? Then it is that one which counts, also where the recorder has not
+ * written the name yet: *index is its index in the history. -ENOENT: the history has nothing of it,
+ * and what it calls so has another name by now.
+ */
+static bool find_live(struct ows_history *h, const char *instance, const char *name, int *index)
 {
+	struct ows_history_signal known = {.identity = ""};
+	bool is_live = false, is_another = false;
 	struct ows *live = NULL;
 	struct ows_info info;
-	int signal = -ENOENT;
+	int now = -ENOENT;
 
 	if (ows_open(instance, OWS_READ, &live))
-		return -ENOENT;
-	for (int i = 0; signal == -ENOENT && !ows_info(live, i, &info); i++)
-		if (!strcmp(info.name, name) && *info.identity)
-			signal = ows_history_find(h, info.identity);
+		return false;
+	if (*index >= 0)
+		ows_history_signal(h, *index, &known);
+	for (int i = 0; !ows_info(live, i, &info); i++)
+		if (*info.identity && !strcmp(info.name, name)) {
+			is_live = true;
+			now = ows_history_find(h, info.identity);
+		} else {
+			is_another |= *info.identity && !strcmp(info.identity, known.identity);
+		}
 	ows_close(live);
-	return signal;
+	if (is_live && (now >= 0 || is_another))
+		*index = now;
+	return is_live;
 }
 
 int past_signal(struct ows_history *h, const char *instance, const char *name,
                 struct ows_history_signal *known)
 {
 	size_t skip = strlen(instance);
-	int signal, live, err;
+	int index = ows_history_find(h, name), err;
+	bool is_live;
 
-	if (!strncmp(name, instance, skip) && !strncmp(name + skip, "__", 2) &&
-	    ows_history_find(h, name) == -ENOENT)
+	if (index == -ENOENT && !strncmp(name, instance, skip) && !strncmp(name + skip, "__", 2)) {
 		name += skip + 2;
-	live = find_live(h, instance, name);
-	signal = live < 0 ? ows_history_find(h, name) : live;
-	err = signal < 0 ? signal : ows_history_signal(h, signal, known);
+		index = ows_history_find(h, name);
+	}
+	is_live = find_live(h, instance, name, &index);
+	err = index < 0 ? index : ows_history_signal(h, index, known);
 	if (err)
 		return err;
-	if (live >= 0)
+	if (is_live)
 		known->name = name;
-	return signal;
+	return index;
 }
 
 int past_unknown(const struct ctl *ctl, struct ows_history *h, const char *name)

@@ -386,6 +386,21 @@ static void test_of_a_signal_that_owsd_has_nothing_may_be_written_yet(void)
 	holds(err, "the history has no signal pumq; did you mean pump?");
 }
 
+static void test_the_past_of_a_signal_that_gave_its_name_to_another_is_not_that_of_the_other(void)
+{
+	/* room1 was called pump until now, and of the pump nothing is written yet */
+	static const struct history_signal before = {"pump", "°C", OWS_DOUBLE,
+	                                             0,      2,    "/28.1/temperature"};
+
+	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(writer, &before, 1, begun_ns));
+	value(0, 1, OWS_Q_GOOD, value_of_double(21.5), NULL);
+	written();
+	TEST_ASSERT_EQUAL(CTL_DONE, trend("--csv room1"));
+	holds(out, "21.5");
+	TEST_ASSERT_EQUAL(CTL_FAILED, trend("--csv pump"));
+	holds(err, "the history has nothing of pump yet");
+}
+
 static void test_a_name_may_have_the_instance_in_front(void)
 {
 	char asked[120];
@@ -441,6 +456,7 @@ int main(void)
 	RUN_TEST(test_good_values_are_points_of_the_line_protocol);
 	RUN_TEST(test_a_name_that_the_history_has_not_is_answered_with_the_nearest);
 	RUN_TEST(test_of_a_signal_that_owsd_has_nothing_may_be_written_yet);
+	RUN_TEST(test_the_past_of_a_signal_that_gave_its_name_to_another_is_not_that_of_the_other);
 	RUN_TEST(test_a_name_may_have_the_instance_in_front);
 	RUN_TEST(test_the_times_of_a_list_can_be_asked_for);
 	return UNITY_END();
