@@ -164,7 +164,7 @@ static void check_port(struct doctor *d, const char *target)
 {
 	char proc[DOCTOR_ROOT + 8], device[DOCTOR_ROOT + PORT_TEXT], who[RIVALS_TEXT];
 	char only[PORT_TEXT];
-	const char *where, *pid;
+	const char *where;
 
 	bus_backend(target, &where);
 	find_port(d, only);
@@ -175,13 +175,11 @@ static void check_port(struct doctor *d, const char *target)
 		report_add(&d->found, BOARD_MISSING,
 		           "%s is open in %s: two programs on one adapter disturb each other",
 		           where, who);
-		pid = strstr(who, ", process ");
 		if (strstr(who, "owserver, "))
 			report_remedy(&d->found, OWSERVER_OFF);
 		else
-			report_command(&d->found,
-			               "ps -fp %d    # it has to end, or to take another",
-			               pid ? (int)strtol(pid + strlen(", process "), NULL, 10) : 0);
+			report_remedy(&d->found,
+			              "end that process, or have it take another adapter");
 	} else if ((d->err == -EACCES || lacks(d, needs_port)) &&
 	           rivals_hidden(proc, who, sizeof(who))) {
 		report_add(&d->found, BOARD_MISSING, "%s runs, and may have the port of target %s",

@@ -66,7 +66,6 @@ void check_services(struct doctor *d)
 
 /* --- owsd ------------------------------------------------------------------------------------ */
 
-/* Two owsd of one name, of two users: each user's programs talk to another one. */
 /* What is left in this user's own place of one that ended, beside the living one of the service. */
 static void name_left(struct doctor *d, const struct shm_dir *dir)
 {
@@ -83,6 +82,7 @@ static void name_left(struct doctor *d, const struct shm_dir *dir)
 	report_command(&d->found, "owsctl remove %s", d->instance);
 }
 
+/* Two owsd of one name, of two users: each user's programs talk to another one. */
 static void check_twins(struct doctor *d)
 {
 	char paths[DIRS][DIR_PATH];
