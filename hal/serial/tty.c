@@ -90,7 +90,7 @@ static int tty_read(struct serial_port *port, uint8_t *bytes, size_t n, int64_t 
 	const struct bus_env *env = port->env;
 
 	for (;;) {
-		/* first, or what comes between the look and the clock of a busy machine is missed */
+		/* first: on a busy machine something may come between the look and the clock */
 		bool late = bus_now(env) >= until_ns;
 		ssize_t came = read(tty_of(port)->fd, bytes, n);
 

@@ -67,11 +67,12 @@ static bool commands_still(const struct writing *w, const struct writer *writer)
 
 	writing_person(&writer->from, person);
 	for (size_t i = 0; i < config->item_count && !still; i++) {
-		struct ows_origin origin;
-		int err = -ENOENT;
+		struct ows_origin origin = {0};
+		int err;
 
-		if (config->items[i].has_safe)
-			err = ows_origin(ows, ows_find(ows, config->items[i].name), &origin);
+		if (!config->items[i].has_safe)
+			continue;
+		err = ows_origin(ows, ows_find(ows, config->items[i].name), &origin);
 		still = err ? err != -ENOENT
 		            : origin.reason != OWS_REASON_SAFE &&
 		                        !strcmp(origin.who.person, person);
