@@ -59,8 +59,9 @@ def pulled_off_and_back(scene, way):
     until(lambda: all(row["good"] for row in rows(scene, daemon).values()), 60,
           lambda: rows(scene, daemon))
     for name in "silent", "initial":
-        path = f"/uncached{CHIPS[name]}/PIO.BYTE"
-        assert scene.owsctl(daemon, "read", path).stdout.strip() == "85", "written again"
+        def read(path=f"/uncached{CHIPS[name]}/PIO.BYTE"):
+            return scene.owsctl(daemon, "read", path)
+        until(lambda: read().stdout.strip() == "85", 10, lambda: f"written again: {read()}")
 
 
 def test_devices_of_its_own_bus_are_pulled_off(scene):
