@@ -27,6 +27,8 @@ COUNTED = ("all", "same", "differs", "cannot be had", "not compared", "write-onl
 PUT = ("writable", "written same", "written differs", "written not written")
 REFUSED = "cannot be had: "
 WRITE_ONLY = "can only be written"
+OWSERVER_FAILS = re.compile(r"owserver (fails|cannot|shows an empty|refuses|reads back, and fails|takes a page for good only)|"
+                            r"to (read|write) it ends owserver")
 MANY = 10  # names that differ in a number, and are shown as one with a star
 INTRO = """# Properties, one by one
 
@@ -35,23 +37,21 @@ What differs from owserver, for who leaves it. owserver 3.2p4 states {all} prope
 same simulated chip, alone on its wire. All adapters of owsd have this alike, but for [the kernel's
 drivers](w1.md#what-there-is). `make properties-page` writes this page.
 
-- **same**: the texts are equal, byte for byte. Running clocks may differ by {clock} s, as may the bytes of a page in
-  which they are, and what a current adds up to by {volt:g} Vh or {amp:g} Ah: it begins with 0, so its scale is not seen
-  here. An array of more than {short} elements is compared in its first four, the middle and the last.
+- **same**: the texts are equal, byte for byte. Running clocks may differ by {clock} s, what a current adds up to by
+  {volt:g} Vh or {amp:g} Ah. An array of more than {short} elements is compared in its first four, the middle and the
+  last.
 - **differs**: a text is another, or one of the two has none.
 - **cannot be had**: owsd refuses it, and will.
 - **not compared**: there was no text of either, or no such part is simulated.
-- **written same**: both accepted the same values, and then read the same; of what can only be written, from what can be
-  read beside it.
+- **written same**: both accepted the same values, and then read the same.
 - **written differs**: one of the two refused a value, or read another one then.
 - **not written**: owsd refuses it.
 
-{writable} can be written: the same values, two or more of each element that was chosen, by owserver to one chip and by
-owsd to another, and read back past the caches. Where the two differ in illegal values alone, the property counts as
-"written same", and the last section has it.
+{writable} can be written. Where the two differ in illegal values alone, the property counts as "written same". Type,
+access, size, array and life in `/structure` are those of owserver for {stated} of the {all}.
 
-Type, access, size, array and life, as `/structure` has them, are those of owserver for {stated} of the {all}. The
-others are limits of the EDS0080 to EDS0085 and two names, see family 7E.
+Counted, and not listed below: what was not compared, and where owserver fails or shows an empty text and owsd does not
+(`tests/unit/data/compared.tsv` and `written.tsv` have these too).
 """
 
 
@@ -135,7 +135,7 @@ def by_reason(records):
     """{(reason, names): verdicts} of one family: what is not the same, read or written."""
     by, joined = collections.OrderedDict(), collections.OrderedDict()
     for verdict, name, reason in records:
-        if verdict not in ("same", "written same", "write-only"):
+        if verdict not in ("same", "written same", "write-only", "not compared") and not OWSERVER_FAILS.match(reason):
             by.setdefault((reason, name), []).append(verdict)
     for (reason, name), verdicts in by.items():
         joined.setdefault((reason, tuple(verdicts)), []).append(name)
@@ -237,8 +237,7 @@ def page():
         *[shared_reason(mark, reason, of[reason]) for reason, mark in marks.items()], "",
         *below,
         "## What is no legal value", "",
-        fill("Only what differs. owsd refuses what it cannot take as it is: a number that means "
-             "something else, cut or wrapped, would be a false value in the chip."), "",
+        fill("owsd refuses what it cannot take as it is:"), "",
         *others(written)]) + "\n"
 
 
