@@ -27,7 +27,7 @@ COUNTED = ("all", "same", "differs", "cannot be had", "not compared", "write-onl
 PUT = ("writable", "written same", "written differs", "written not written")
 REFUSED = "cannot be had: "
 WRITE_ONLY = "can only be written"
-OWSERVER_FAILS = re.compile(r"owserver (fails|cannot|shows an empty|refuses|reads back, and fails|takes a page for good only)|"
+OWSERVER_FAILS = re.compile(r"owserver (fails|cannot|shows an empty|refuses|reads back, and fails|takes a page for good only|sends the command that reads, and fails)|"
                             r"to (read|write) it ends owserver")
 MANY = 10  # names that differ in a number, and are shown as one with a star
 INTRO = """# Properties, one by one
@@ -217,7 +217,7 @@ def page():
     marks = {reason: chr(ord("a") + n) for n, reason in enumerate(common)}
     of = {reason: [(family, found, verdicts) for family in families for (other, found), verdicts in
                    reasons[family].items() if other == reason] for reason in common}
-    below = [line for family in families if reasons[family] for line in
+    below = [line for family in families if f"{family} ({chip.get(family, '')})" not in alike for line in
              section(family, chip.get(family, ""), reasons[family], marks, counts[family])]
     intro = INTRO.format(all=sums["all"], writable=len(written), families=len(families), stated=len(stated),
                          clock=compare.CLOCK_S, short=compare.SHORT,
