@@ -6,7 +6,7 @@ sh, console  run by a shell that finds the programs of standin.py and a few harm
              others; absolute paths lie below a root of the test's own. In a console block the
              output is compared too: numbers and "..." stand for anything
 c, cpp       compiled without a warning; whole programs are run, faces beside an owsd
-python       run; what needs pandas or DuckDB is compiled, and test_history_readers.py runs it
+python       run
 sql          whole statements; test_history_readers.py runs them
 rio, sim     read by owsd --check; by owsctl dir
 json         parsed
@@ -258,9 +258,6 @@ def do_sql(_stage, text):
 
 
 def do_python(stage, text):
-    if re.search("^import (duckdb|pandas)$", text, re.M):
-        compile(text, "the page", "exec")
-        return
     stage.program([sys.executable, stage.scene.file("snippet.py", stage.own(text))])
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The queries of docs/history-queries.md, word for word, on a history that owsd-recorder writes
-meanwhile: by sqlite3 (also what is pasted into Grafana, whose macros stand in its place), pandas
-and DuckDB. Two days of it are rows that were put into the file; their sums are the recorder's."""
+"""The queries of docs/history-queries.md, word for word, and the examples for pandas and DuckDB, on a
+history that owsd-recorder writes meanwhile: by sqlite3 (also what is pasted into Grafana, whose
+macros stand in its place), pandas and DuckDB. Two days of it are rows that were put into the file;
+their sums are the recorder's."""
 
 import contextlib
 import datetime
@@ -239,10 +240,10 @@ def test_what_is_pasted_into_grafana_is_read_beside_the_recorder(scene):
 
 
 def by_python(house, module, tail):
-    """The block that imports it, and after it what prints its results as JSON."""
+    """The example with that module, and after it what prints its results as JSON."""
     clients.python_client(module, WANTED, "history-readers")
     packages = sys.path[0]
-    block = next(b for blocks in sections().values() for b in blocks if f"import {module}\n" in b)
+    block = (owsdtest.SOURCE / f"docs/examples/history_{module}.py").read_text()
     home = house.scene.path / "home"
     for file in (house.scene.path.__class__(packages)).glob(
             "duckdb_extension_sqlite_scanner/extensions/*/*.duckdb_extension"):
