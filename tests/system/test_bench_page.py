@@ -135,7 +135,7 @@ def test_saved_figures_become_tables_and_the_prose_is_kept(scene):
     assert "| 16, pinned | 4 000/s | 50.0, 99.0 us | 1 000/s | 4.0 | 90 000/s | 8 times: **missed** |" in after
     assert "| all of 50 thermometers anew, 100 kHz, kernel rig | 6.0 s | kernel w1 6.0 s (bulk), 6.0 s (one by one), owserver 6.0 s |" in after
     assert "| served reads, 1 client | 4 000/s | owserver 1 000/s |" in after
-    assert "| owsd direct | 50 | 6.00 | 3000 | 600 |" in after
+    assert "| owsd direct | 6.00 | 3000 | 600 |" in after
     assert "| resident with 100 signals, nobody looks | 4 400 KiB | 5 MB: met |" in after
     assert "have values | 150 ms | 200 ms: met |" in after
     assert "| 100, 15 % | 1.50 % | 25.5 MiB | 45.0 kB/s | 50.0, 95.0, 99.0 ms |" in after
