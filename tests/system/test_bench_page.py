@@ -33,7 +33,7 @@ def some_output():
              "set_to_wire.wakes 100.00 us", "set_to_wire.wakes_loopback 120.00 us"]
     lines += [f"{scheme}.{what}{who} 1.50 s" for scheme in ("serial", "uart") for who in ("", ".owserver")
               for what in ("scan.10", "scan.50", "scan.50.trips", "cpu.20", "cpu.20.readings")]
-    lines += ["page.idle.rss 4400 KiB", "page.idle.rss.own 700 KiB", 
+    lines += ["page.idle.rss 4400 KiB", "page.idle.rss.own 700 KiB",
               "page.paint.first 90 ms", "page.paint.paint 150 ms",
               "page.paint.again 210 ms", "page.streams.0.cpu 0.20 %", "page.streams.0.rss 26000 KiB"]
     for name in ("streams.1", "streams.100", "quiet.100"):
