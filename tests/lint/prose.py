@@ -65,6 +65,14 @@ def check_each_guide_ends_with_what_comes_next(tree):
                 yield page, 1, 'end it with "## Next" and two or three links'
 
 
+def check_each_item_of_a_list_begins_a_line(tree):
+    for page in pages(tree):
+        text = re.sub(r"^ *```.*?^ *```$", lambda block: "\n" * block[0].count("\n"), tree.text(page), flags=re.M | re.S)
+        for number, line in enumerate(text.split("\n"), 1):
+            if re.search(r"[.:;)] - |\S - \*\*|\w -$", line) and not line.startswith("|"):
+                yield page, number, "begin a line with each item of a list"
+
+
 def check_no_guide_names_the_source(tree):
     """Who reads a guide has packages. history.md says where the schema stands."""
     for page in pages(tree):

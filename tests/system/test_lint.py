@@ -46,6 +46,7 @@ FAULTS = [
     ("src/x/a/late.c", f'{HEAD}#include "src/x/a/a.h"\nint late( void );\n', r"src/x/a/late.c:4: not laid out"),
     ("docs/torn.md", "| a |\n|---|\n| 1 |\n\n| 2 |\n- \n", r"docs/torn.md:5: a row without a table"),
     ("docs/torn.md", "| a |\n|---|\n| 1 |\n\n| 2 |\n- \n", r"docs/torn.md:6: an empty item"),
+    ("docs/run.md", "- One stands. - Two does not.\n", r"docs/run.md:1: begin a line with each item"),
     ("src/x/a/wide.c", f"{HEAD}/* {LONG} */\n", r"src/x/a/wide.c:3: 10\d columns; wrap the comment"),
     ("docs/blank.py", f"# {MIT}\nx = 1 \n", r"docs/blank.py:2: a blank at the end"),
     ("docs/bare.py", "x = 1\n", r"docs/bare.py:1: no SPDX lines"),
