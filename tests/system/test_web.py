@@ -332,7 +332,7 @@ def test_the_loss_of_owsd_makes_all_values_unknown_and_its_return_is_told(scene)
         last = events.id
         signals = page.json("/api/signals")["signals"]
         assert all(s["value"] is None and not s["quality"]["good"] for s in signals), signals
-        assert signals[0]["quality"]["why"] == "owsd has ended or hangs: no heartbeat of it comes.", signals[0]
+        assert signals[0]["quality"]["why"] == "owsd has ended or hangs.", signals[0]
         assert signals[0]["quality"]["remedy"].startswith("Does the service run"), signals[0]
         assert page.json("/api/info")["up"] is None
         # a browser that comes now learns it too
