@@ -122,7 +122,7 @@ def buttons_and_lamp(target):
              Alarm=raw("on"), LatchAlarm="latch.BYTE", PorAlarm="por",
              SetAlarm="set_alarm=133331111", ResetLatch="latch.BYTE=0"),
         dict(Name="lamp", Path=SWITCH + "/PIO.0", Type=raw("bool"), IO=raw("output"),
-             InitValue="0"),
+             InitValue="0", ReadBack=raw("0")),
     ], Period=0.05)
 
 
@@ -132,6 +132,7 @@ def without_set_alarm(target):
 
 
 def transactions(scene, daemon, name):
+    """Writes, of an output that is not read back."""
     return int(scene.owsctl(daemon, "get", name + "_TRANSACTIONS").stdout)
 
 
