@@ -21,6 +21,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -32,6 +33,7 @@ import owsdtest
 
 SCALES, FORMATS = "CFKR", ("f.i", "fi", "f.i.c", "f.ic", "fi.c", "fic")
 HERE = pathlib.Path(__file__).resolve().parent
+PIP = 1800  # seconds
 
 
 class Refused(Exception):
@@ -203,19 +205,29 @@ def python_client(name, wanted=HERE / "requirements.txt", folder="clients"):
     return importlib.import_module(name)
 
 
+def _pip(venv, made, what, *words):
+    """pip install WORDS with a new venv; where that fails, made is removed again and the test is
+    skipped. A package without a wheel is compiled, which takes minutes on a busy machine."""
+    for command in ([sys.executable, "-m", "venv", venv],
+                    [f"{venv}/bin/python", "-m", "pip", "--quiet", "--disable-pip-version-check",
+                     "--retries", "1", "install", *words]):
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              start_new_session=True) as pip:
+            try:
+                last = (pip.communicate(timeout=PIP)[0].strip().splitlines() or ["?"])[-1]
+            except subprocess.TimeoutExpired:
+                os.killpg(pip.pid, signal.SIGKILL)  # its compilers, too
+                last = f"pip takes longer than {PIP} s"
+        if pip.returncode:
+            shutil.rmtree(made, ignore_errors=True)
+            owsdtest.skip(f"not cached and cannot be had: {what}: {last[-200:]}")
+
+
 def _install(wanted, packages):
     with tempfile.TemporaryDirectory() as where:
         fresh = pathlib.Path(tempfile.mkdtemp(dir=packages.parent))
-        for command in ([sys.executable, "-m", "venv", where],
-                        [f"{where}/bin/python", "-m", "pip", "--quiet", "--disable-pip-version-check",
-                         "--retries", "1", "--timeout", "10", "install", "--require-hashes",
-                         "--no-deps", "--no-compile", "--only-binary", ":all:",
-                         "--target", str(fresh), "-r", str(wanted)]):
-            done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
-            if done.returncode:
-                shutil.rmtree(fresh)
-                last = ((done.stderr or done.stdout).strip().splitlines() or ["?"])[-1]
-                owsdtest.skip(f"not cached and cannot be had: {wanted.name}: {last}")
+        _pip(where, fresh, wanted.name, "--timeout", "10", "--require-hashes", "--no-deps",
+             "--no-compile", "--only-binary", ":all:", "--target", str(fresh), "-r", str(wanted))
         shutil.copy(wanted, fresh)
         shutil.rmtree(packages, ignore_errors=True)
         fresh.rename(packages)
@@ -234,12 +246,7 @@ def environment(name, wanted):
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (place / "wanted").exists() or (place / "wanted").read_text() != mark:
             shutil.rmtree(place, ignore_errors=True)
-            for command in ([sys.executable, "-m", "venv", place],
-                            [place / "bin/python", "-m", "pip", "-q", "--retries", "1", "install", *wanted]):
-                done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
-                if done.returncode:
-                    shutil.rmtree(place, ignore_errors=True)
-                    owsdtest.skip(f"not cached and cannot be had: {wanted[0]}: {done.stderr.strip()[-200:]}")
+            _pip(place, place, wanted[0], *wanted)
             (place / "wanted").write_text(mark)
     return place / "bin"
 
