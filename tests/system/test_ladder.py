@@ -77,14 +77,17 @@ class Made:
 
 
 def test_what_has_passed_is_not_run_again_until_what_it_reads_changes(scene):
-    tree = Made(scene, suite("one", "echo 3 passed, 0 failed"), suite("two", "true", reads="everything"))
+    tree = Made(scene, suite("one", "echo 3 passed, 0 failed"), suite("two", "true", reads="everything"),
+                suite("unit", "true", reads="programs"))
     # and the packages, the form and the programs, which are looked after each time
-    assert tree.check("--rung", "check") == (["one", "two"], "7 passed, 0 failed", 0), tree.said
-    assert tree.check("--rung", "check") == ([], "4 passed, 0 failed", 0), tree.said
+    assert tree.check("--rung", "check") == (["one", "two", "unit"], "8 passed, 0 failed", 0), tree.said
+    assert tree.check("--rung", "check") == ([], "5 passed, 0 failed", 0), tree.said
     tree.write("docs/page.md", "other\n")
     assert tree.check("--rung", "check")[0] == ["two"]
+    tree.write("tests/system/test_other.py", "other\n")
+    assert tree.check("--rung", "check")[0] == ["one", "two"]
     tree.write("src/new.c", "int b;\n")
-    assert "left: one two" in (tree.check("--rung", "check"), tree.said)[1]
+    assert "left: one two unit" in (tree.check("--rung", "check"), tree.said)[1]
     assert tree.check("one")[0] == [] and tree.check("--again", "one")[0] == ["one"]
 
 
