@@ -186,11 +186,10 @@ def compiled(stage, text, compiler, suffix, flags):
     """The program that a block is, or None where it is a part of one."""
     assert "..." not in re.sub(r"/\*.*?\*/|//.*|\"[^\"]*\"", "", text, flags=re.S), \
         "words in place of code: make it whole"
-    unit_test, face = '"unity.h"' in text, FACE in text
-    whole = "main(" in text and not unit_test
+    whole, face = "main(" in text, FACE in text
     if not re.search(r"^(#include|static |extern )|^\w[\w *]*\([^;{]*\)\n\{", text, re.M):
         text = "void fragment(void);\nvoid fragment(void)\n{\n" + textwrap.indent(text, "\t") + "\n}\n"
-    if not whole and not unit_test:
+    if not whole:
         text = "#include <errno.h>\n#include <stdio.h>\n#include <ows.h>\n" + text
     source = stage.scene.file("snippet" + suffix, stage.own(text))
     output = stage.path / "snippet"
@@ -199,8 +198,7 @@ def compiled(stage, text, compiler, suffix, flags):
         library = [owsdtest.BUILD / "core.a",
                    *re.findall(r"-l[\w.-]+", (owsdtest.BUILD / "with/ld").read_text())]
     done = stage.run([compiler, *flags, *WARN, "-D_GNU_SOURCE", f"-I{SOURCE}/src/public",
-                      f"-I{SOURCE}", "-isystem", HERE / "docs", source,
-                      *library, "-o", output])
+                      f"-I{SOURCE}", source, *library, "-o", output])
     assert done.returncode == 0, done.stderr
     return output if whole else None
 
