@@ -33,8 +33,8 @@ MANY = 10  # names that differ in a number, and are shown as one with a star
 INTRO = """# Properties, one by one
 
 What differs from owserver, for who leaves it. owserver 3.2p4 states {all} properties of {families} families in its
-`/structure`. Each was asked for twice, of the genuine owserver (over a DS9097) and of owsd (over a DS2482), with the
-same simulated chip, alone on its wire. All adapters of owsd have this alike, but for [the kernel's
+`/structure`. Genuine owserver (over a DS9097) and owsd (over a DS2482) were asked for each, twice, with the same
+simulated chip alone on its wire. All adapters of owsd have this alike, but for [the kernel's
 drivers](w1.md#what-there-is). `make properties-page` writes this page.
 
 - **same**: the texts are equal, byte for byte. Running clocks may differ by {clock} s, what a current adds up to by
@@ -42,15 +42,15 @@ drivers](w1.md#what-there-is). `make properties-page` writes this page.
   last.
 - **differs**: a text is another, or one of the two has none.
 - **cannot be had**: owsd refuses it, and will.
-- **not compared**: there was no text of either, or no such part is simulated.
-- **written same**: both accepted the same values, and then read the same.
+- **not compared**: neither had a text, or no such part is simulated.
+- **written same**: both accepted the same values, and then read the same. Illegal values do not count.
 - **written differs**: one of the two refused a value, or read another one then.
 - **not written**: owsd refuses it.
 
-{writable} can be written. Where the two differ in illegal values alone, the property counts as "written same". Type,
-access, size, array and life in `/structure` are those of owserver for {stated} of the {all}.
+{writable} can be written. Type, access, size, array and life in `/structure` are those of owserver for {stated} of the
+{all}.
 
-Counted, and not listed below: what was not compared, and where owserver fails or shows an empty text and owsd does not
+Not listed below: what was not compared, and where owserver fails or shows an empty text and owsd does not
 (`tests/unit/data/compared.tsv` and `written.tsv` have these too).
 """
 
@@ -205,9 +205,8 @@ def page():
         sums.update(count)
         if count["all"] == count["same"] and count["writable"] == count["written same"]:
             alike.append(f"{family} ({chip.get(family, '')})")
-        counts[family] = ", ".join(f"{word} {part}/{of}" for word, part, of in (
-            ("read", count["same"], count["all"] - count["write-only"]),
-            ("written", count["written same"], count["writable"])) if of)
+        counts[family] = ", ".join(f"{part}/{of}" for part, of in (
+            (count["same"], count["all"] - count["write-only"]), (count["written same"], count["writable"])) if of)
         reasons[family] = by_reason(
             [(verdict_of(record), r.property, record[2].removeprefix(REFUSED)) for r, record in mine] +
             [(line.verdict if line.verdict == "not written" else f"written {line.verdict}", name, line.reason)
@@ -225,19 +224,18 @@ def page():
     return "\n".join([
         "\n\n".join(p if p[0] in "#|" else fill(p) for p in intro.strip().split("\n\n")), "",
         "## What a user notices", "",
-        fill("What no comparison shows. [Below](#family-by-family) are the properties one by one."),
+        fill("What no comparison shows:"),
         "", *[item(f"**{of}**: {note}") for of, note in notes()], "",
         "## How many", "",
         fill(", ".join(f"{sums[k]} {k}" for k in COUNTED[1:]) + "; of those that can be written " +
              ", ".join(f"{sums[k]} {k.removeprefix('written ')}" for k in PUT[1:]) + "."), "",
         fill(f"All is the same, read and written: {', '.join(alike)}."), "",
         "## Family by family", "",
-        fill("How much is read, and written, the same; what is not, and why. A letter stands for a reason "
-             "of several families:"), "",
+        fill("How many of the properties read the same, and of those that can be written how many are written the "
+             "same; then what is not the same, and why. A letter stands for a reason of several families:"), "",
         *[shared_reason(mark, reason, of[reason]) for reason, mark in marks.items()], "",
         *below,
         "## What is no legal value", "",
-        fill("owsd refuses what it cannot take as it is:"), "",
         *others(written)]) + "\n"
 
 
