@@ -142,8 +142,8 @@ def by_reason(records):
     return {(reason, tuple(found)): verdicts for (reason, verdicts), found in joined.items()}
 
 
-def section(family, chip, by, marks, counts):
-    """A family: how much is the same of it, and what is not, by reasons; the shared ones by their letters."""
+def section(family, chip, by, marks):
+    """A family: what is not the same, by reasons; the shared ones by their letters."""
     said = {}
     for (reason, found), verdicts in by.items():
         if reason not in marks:
@@ -151,7 +151,7 @@ def section(family, chip, by, marks, counts):
     shared = ", ".join(sorted({marks[reason] for reason, _ in by if reason in marks}))
     lines = [item("; ".join(parts) + f". {reason if reason.startswith('ow') else reason[:1].upper() + reason[1:]}")
              for reason, parts in said.items()]
-    return [f"**{family}** {chip}: {counts}{shared and f'; {shared}'}", "", *lines, *[""] * bool(lines)]
+    return [f"**{family}** {chip}{shared and f': {shared}'}", "", *lines, *[""] * bool(lines)]
 
 
 def shared_reason(mark, reason, of):
@@ -195,7 +195,7 @@ def page():
     stated, chip = build_states(rows), chips()
     families = sorted({r.family for r in rows})
     sums = collections.Counter()
-    alike, reasons, counts = [], {}, {}
+    alike, reasons = [], {}
     for family in families:
         mine = [(r, recorded[r.family, r.property]) for r in rows if r.family == family]
         count = collections.Counter(verdict_of(record) for _, record in mine)
@@ -205,8 +205,6 @@ def page():
         sums.update(count)
         if count["all"] == count["same"] and count["writable"] == count["written same"]:
             alike.append(f"{family} ({chip.get(family, '')})")
-        counts[family] = ", ".join(f"{part}/{of}" for part, of in (
-            (count["same"], count["all"] - count["write-only"]), (count["written same"], count["writable"])) if of)
         reasons[family] = by_reason(
             [(verdict_of(record), r.property, record[2].removeprefix(REFUSED)) for r, record in mine] +
             [(line.verdict if line.verdict == "not written" else f"written {line.verdict}", name, line.reason)
@@ -216,8 +214,8 @@ def page():
     marks = {reason: chr(ord("a") + n) for n, reason in enumerate(common)}
     of = {reason: [(family, found, verdicts) for family in families for (other, found), verdicts in
                    reasons[family].items() if other == reason] for reason in common}
-    below = [line for family in families if f"{family} ({chip.get(family, '')})" not in alike for line in
-             section(family, chip.get(family, ""), reasons[family], marks, counts[family])]
+    below = [line for family in families if reasons[family] for line in
+             section(family, chip.get(family, ""), reasons[family], marks)]
     intro = INTRO.format(all=sums["all"], writable=len(written), families=len(families), stated=len(stated),
                          clock=compare.CLOCK_S, short=compare.SHORT,
                          volt=compare.SUMS["volthours"], amp=compare.SUMS["amphours"])
@@ -231,8 +229,8 @@ def page():
              ", ".join(f"{sums[k]} {k.removeprefix('written ')}" for k in PUT[1:]) + "."), "",
         fill(f"All is the same, read and written: {', '.join(alike)}."), "",
         "## Family by family", "",
-        fill("How many of the properties read the same, and of those that can be written how many are written the "
-             "same; then what is not the same, and why. A letter stands for a reason of several families:"), "",
+        fill("What is not the same, and why. Of an absent family only what is not listed, as above, differs. "
+             "A letter stands for a reason of several families:"), "",
         *[shared_reason(mark, reason, of[reason]) for reason, mark in marks.items()], "",
         *below,
         "## What is no legal value", "",
