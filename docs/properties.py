@@ -174,13 +174,9 @@ def notes():
 
 def others(written):
     """[a line of each way in which what is no legal value differs]"""
-    by = collections.OrderedDict()
-    for (family, name), line in written.items():
-        for other in line.others.split(", ") if line.verdict == "same" != line.others else ():
-            by.setdefault(other, collections.OrderedDict()).setdefault(family, []).append(name)
-    return [item(f"**{other}**: {compare_writes.OTHERS[other]} ("
-                 f"{sum(map(len, of.values()))} properties of {len(of)} families)")
-            for other, of in sorted(by.items())]
+    ways = {other for line in written.values() if line.verdict == "same" != line.others
+            for other in line.others.split(", ")}
+    return [item(f"**{other}**: {compare_writes.OTHERS[other]}") for other in sorted(ways)]
 
 
 def chips():
