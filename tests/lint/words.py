@@ -50,7 +50,7 @@ def script_of(table, public):
 
 
 def page_of(table):
-    """Tables: of qualities and errors with the remedy, of alarms with cause and remedy, of healths."""
+    """Tables: of qualities and of alarms with cause and remedy, of healths, of errors with the remedy."""
     def row(*cells):
         cells = (re.sub(r'"((?:owsctl|property)[^"]*)"', r"`\1`", cell) for cell in cells)
         return "| " + " | ".join(re.sub(r"(?<![`\w])owsctl [a-z]+", r"`\g<0>`", cell) for cell in cells) + " |"
@@ -59,10 +59,9 @@ def page_of(table):
         return ["", row(*cells), "|---" * len(cells) + "|"]
 
     out = []
-    out += head("quality", "what to do")
-    out += [row(f"`{word}`", remedy) for _, word, _, remedy in rows(table, "QUALITY")]
-    out += head("alarm of a device", "why", "what to do")
-    out += [row(f"`{word}`", cause, remedy) for _, word, cause, remedy in rows(table, "ALARM")]
+    for macro, first in (("QUALITY", "quality"), ("ALARM", "alarm of a device")):
+        out += head(first, "why", "what to do")
+        out += [row(f"`{word}`", cause, remedy) for _, word, cause, remedy in rows(table, macro)]
     out += head("error", "what to do")
     out += [row(f"`{word}`", remedy) for word, remedy in
             reversed({word: remedy for _, word, remedy in reversed(list(rows(table, "ERROR")))}.items())]
