@@ -225,7 +225,7 @@ def page():
              ", ".join(f"{sums[k]} {k.removeprefix('written ')}" for k in PUT[1:]) + "."), "",
         fill(f"All is the same, read and written: {', '.join(alike)}."), "",
         "## Family by family", "",
-        fill("What is not the same, and why. Of an absent family only what is not listed, as above, differs. "
+        fill("What is not the same, and why. A family that is missing here differs only in what this page leaves out. "
              "A letter stands for a reason of several families:"), "",
         *[shared_reason(mark, reason, of[reason]) for reason, mark in marks.items()], "",
         *below,
