@@ -365,8 +365,9 @@ def test_a_flood_is_cut_and_logged_in_a_few_lines(scene):
     # those without a line are counted
     refused = house.arrives("health", lambda m: "nobody" in m["trouble"])["commands_refused"]
     assert house.face.stop() == 0
-    others = re.search(r"more than 50 commands in a second \((\d+) times since the last such line\)", house.face.log())
-    assert others and house.face.log().count(" refused: ") - 1 + int(others[1]) == refused, house.face.log()
+    # on a busy machine some have waited for too long: another reason, and a line of its own
+    others = [int(n) for n in re.findall(r" refused: .* \((\d+) times since the last such line\)", house.face.log())]
+    assert others and house.face.log().count(" refused: ") - len(others) + sum(others) == refused, house.face.log()
 
 
 def peak_kib(program):
