@@ -132,11 +132,14 @@ def test_what_was_broken_off_goes_on_and_nothing_of_it_is_left(scene):
     assert ran == ["two"] and status == 0, tree.said
 
 
-def test_a_suite_leaves_no_process(scene):
-    pid = scene.path / "pid"
-    tree = Made(scene, suite("one", f"sleep 300 >/dev/null 2>&1 & echo $! >{pid}"))
-    assert tree.check("one")[2] == 0
-    assert is_ended(pid.read_text().strip())
+def test_a_suite_leaves_no_process_of_whatever_session(scene):
+    pids = [scene.path / name for name in ("same", "other", "deaf")]
+    begun = ["", "setsid ", "setsid sh -c 'trap \"\" TERM; exec \"$@\"' sh "]
+    tree = Made(scene, suite("one", "; ".join(
+        f"{how}sh -c 'echo $$ >{pid}.new; mv {pid}.new {pid}; exec sleep 300' >/dev/null 2>&1 & "
+        f"while [ ! -e {pid} ]; do sleep 0.1; done" for how, pid in zip(begun, pids))))
+    assert tree.check("one")[2] == 0, tree.said
+    assert all(is_ended(pid.read_text().strip()) for pid in pids)
 
 
 def test_a_change_asks_for_the_suites_that_name_its_path(scene):
