@@ -12,7 +12,7 @@ enum gpio_count {
 	GPIO_PULSES,       /* pulses shorter than the time between two reads, and shown */
 	GPIO_EDGES_UNSEEN, /* edges between two reads that no reading showed */
 	GPIO_REFUSED,      /* requests of lines that the kernel refused */
-	GPIO_OPENS,        /* times that the chip was opened */
+	GPIO_OPENS,        /* times the chip was opened */
 	GPIO_COUNTS,
 };
 

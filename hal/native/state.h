@@ -21,7 +21,7 @@
 /* What a bus counts, and the counter's name. */
 #define NATIVE_COUNTS(X) \
 	X(RETRIES, "retries") /* transactions made again after an error of the adapter */ \
-	X(BUS_RESETS, "recover_bus_reset")     /* resets of a wire after that */ \
+	X(BUS_RESETS, "recover_bus_reset")     /* resets of a wire after link errors */ \
 	X(CHIP_RESETS, "recover_chip_reset")   /* resets of the bridge chip */ \
 	X(POWER_CYCLES, "recover_power_cycle") /* the supply was switched off and on */ \
 	X(REOPENS, "recover_reopen")           /* adapter and chips were opened again */ \
@@ -41,7 +41,7 @@
 	X(RESTARTED, "devices_restarted")      /* devices that lost their power meanwhile */ \
 	X(WIRE_US, "wire_us")                  /* time in which the wire was busy */ \
 	X(I2C_TRANSFERS, "i2c_transfers")      /* calls of the adapter */ \
-	X(SYSCALLS, "syscalls")                /* calls of the kernel for them */ \
+	X(SYSCALLS, "syscalls")                /* calls of the kernel for the adapter */ \
 	X(WIRES, "wires")                      /* wires of the target */ \
 	NATIVE_WIRE_COUNTS(X, 0) \
 	NATIVE_WIRE_COUNTS(X, 1) \
@@ -53,8 +53,8 @@
 	NATIVE_WIRE_COUNTS(X, 7)
 /* Of the first wires, those of a DS2482-800, each by itself. */
 #define NATIVE_WIRE_COUNTS(X, n) \
-	X(WIRE_##n##_US, "wire_" #n "_us")         /* the same of one of the first eight wires */ \
-	X(WIRE_##n##_ERRORS, "wire_" #n "_errors") /* checksums, shorts and errors of it */
+	X(WIRE_##n##_US, "wire_" #n "_us")         /* time in which wire N (0 to 7) was busy */ \
+	X(WIRE_##n##_ERRORS, "wire_" #n "_errors") /* checksums, shorts and errors of wire N */
 enum native_count {
 #define X(count, name) COUNT_##count,
 	NATIVE_COUNTS(X)

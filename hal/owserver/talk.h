@@ -15,12 +15,12 @@
 
 enum talk_counter {
 	TALK_REQUESTS,    /* requests to the owserver */
-	TALK_KEEPALIVES,  /* signs of life of a server that works on a request */
-	TALK_CONNECTIONS, /* connections that were opened */
+	TALK_KEEPALIVES,  /* keep-alives of a server that works */
+	TALK_CONNECTIONS, /* opened connections */
 	TALK_REFUSED,     /* answers after which the server closed, though asked to keep open */
 	TALK_STALE,       /* idle connections that the server had closed; no failure */
 	TALK_GARBAGE,     /* answers that are none */
-	TALK_FLOODS,      /* requests given up for too many signs of life */
+	TALK_FLOODS,      /* requests given up for too many keep-alives */
 	TALK_TIMEOUTS,    /* requests without an answer in time */
 	TALK_BYTES_IN,    /* bytes of the server */
 	TALK_BYTES_OUT,   /* bytes to the server */

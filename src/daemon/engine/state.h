@@ -69,28 +69,28 @@ struct slot {
 
 #define LANE_COUNTERS(X) \
 	X(requests)        /* requests given to the bus */ \
-	X(reads)           /* reads that succeeded */ \
-	X(writes)          /* writes that succeeded */ \
-	X(item_errors)     /* requests of items that failed for their device or path */ \
-	X(target_failures) /* times that the target went down */ \
-	X(reconnects)      /* times that it came up again */ \
-	X(given_up)        /* requests that the bus did not answer in time */ \
-	X(late_answers)    /* answers that came after that time */ \
+	X(reads)           /* successful reads */ \
+	X(writes)          /* successful writes */ \
+	X(item_errors)     /* requests that failed for their device or path */ \
+	X(target_failures) /* times the target went down */ \
+	X(reconnects)      /* times the target came up again */ \
+	X(given_up)        /* requests not answered in time */ \
+	X(late_answers)    /* answers to requests given up */ \
 	X(unknown_answers) /* answers to no request, or a second time */ \
 	X(power_faults)    /* readings of 85 and 127.94, refused */ \
-	X(out_of_range)    /* values that the chip cannot have measured, refused */ \
-	X(held_back)       /* values that jumped beyond MaxStep, not published */ \
+	X(out_of_range)    /* values that the chip cannot measure, refused */ \
+	X(held_back)       /* jumps beyond MaxStep, not published */ \
 	X(device_returns)  /* devices that came back */ \
 	X(alarm_lists)     /* readings of /alarm */ \
 	X(alarms)          /* alarms of devices */ \
 	X(power_on_resets) /* restarts of devices that PorAlarm showed */ \
 	X(moves_in)        /* signals that came from another target */ \
 	X(moves_out)       /* signals that went to another target */ \
-	X(probes)          /* looks for a device that another target does not have */ \
-	X(watches)         /* looks for a device whose signals are seldom read */ \
+	X(probes)          /* looks for a device that another target lacks */ \
+	X(watches)         /* looks for a device that is seldom read */ \
 	X(not_released)    /* the next way was opened before this one had let go */ \
-	X(guests)          /* requests of clients of the served protocol, given to the bus */ \
-	X(guest_errors)    /* such requests that failed */
+	X(guests)          /* requests of served clients */ \
+	X(guest_errors)    /* requests of served clients that failed */
 
 /* What is to be said of the target, and since when; "": nothing. */
 struct lane_note {
@@ -178,13 +178,13 @@ struct lane {
 #define ENGINE_COUNTERS(X) \
 	X(periods)           /* periods since owsd started */ \
 	X(late_periods)      /* periods that began more than a period late */ \
-	X(steps)             /* times that the engine did its round */ \
+	X(steps)             /* rounds of the engine */ \
 	X(commands)          /* values taken from controllers */ \
 	X(refused_commands)  /* values that no program should have put there */ \
 	X(deferred_commands) /* commands that came too fast, left for 10 ms */ \
 	X(lost_controllers)  /* controllers that stopped beating */ \
 	X(safe_outputs)      /* outputs put to SafeValue */ \
-	X(reloads)           /* changed configurations that were taken over */
+	X(reloads)           /* changed configurations taken over */
 
 /* What the engine knows of a controller; below OWS_CONTROLLERS the index is its seat. */
 struct known_controller {

@@ -19,10 +19,10 @@
 
 #define ENGINE_STACK (128 * 1024)
 enum {
-	COUNTER_LOG_DROPPED,    /* lines of the log that were lost */
+	COUNTER_LOG_DROPPED,    /* lost lines of the log */
 	COUNTER_MUTED_BELLS,    /* bells rung without end, left out for a while */
 	COUNTER_WORKER_STALLS,  /* messages of buses that had to wait */
-	COUNTER_DROPPED_EVENTS, /* events of buses that were dropped */
+	COUNTER_DROPPED_EVENTS, /* dropped events of buses */
 	COUNTER_UNFINISHED,     /* 1 or 2: a reload is not whole yet */
 	COUNTER_UNSTORED,       /* commands of Start "last" that could not be stored */
 	COUNTER_REFUSED,        /* reloads that were refused */

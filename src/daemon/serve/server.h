@@ -107,12 +107,12 @@ struct client {
 	X(errors)         /* requests answered with an error */ \
 	X(kept_answers)   /* reads that needed no bus */ \
 	X(bus_requests)   /* requests to the engine */ \
-	X(keepalives)     /* signs of life for clients that wait for an answer */ \
+	X(keepalives)     /* keep-alives for clients that wait */ \
 	X(full)           /* connections that had to wait for a place */ \
 	X(not_kept)       /* connections closed after an answer, because others waited */ \
 	X(refused_peers)  /* peers that are not in ListenAllow */ \
 	X(refused_writes) /* writes refused: read-only, ControlAllow, too old, beside an output */ \
-	X(came_round)     /* requests that came here before, by way of other servers */ \
+	X(came_round)     /* requests that came back by way of other servers */ \
 	X(evicted)        /* idle clients closed because others waited */ \
 	X(refused_errors) /* connections closed at once: the kernel lacked something */ \
 	X(costly)         /* clients closed, because each byte to them took long */ \
@@ -120,7 +120,7 @@ struct client {
 	X(timeouts)       /* half requests, answers no client took, idle connections */ \
 	X(bytes_in)       /* bytes of clients */ \
 	X(bytes_out)      /* bytes to clients */ \
-	X(absent)         /* addresses of Listen that no interface of this machine has now */
+	X(absent)         /* addresses of Listen that this machine lacks now */
 
 enum serve_counter {
 #define X(name) COUNT_##name,

@@ -33,9 +33,9 @@
 #define CONTROL_COUNTERS(X) \
 	X(connections)      /* connections now */ \
 	X(joined)           /* programs that connected */ \
-	X(asked)            /* programs that asked for a reload, and were answered */ \
+	X(asked)            /* programs that asked for a reload, answered */ \
 	X(refused_rights)   /* programs whose user may not */ \
-	X(refused_limits)   /* programs refused, as there were too many of a user or of all */ \
+	X(refused_limits)   /* programs refused: too many of a user, or of all */ \
 	X(refused_protocol) /* programs that sent wrong words, or none in time */ \
 	X(refused_errors)   /* no memory or descriptor; also while a connection waits */ \
 	X(hung_up)          /* programs that ended their connection */ \
