@@ -230,6 +230,7 @@ def page():
         *[shared_reason(mark, reason, of[reason]) for reason, mark in marks.items()], "",
         *below,
         "## What is no legal value", "",
+        fill('Where the two differ in these values alone, the property counts as "written same":'), "",
         *others(written)]) + "\n"
 
 
