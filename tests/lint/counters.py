@@ -47,11 +47,6 @@ def roff(text):
     return re.sub(r'"([^"]*)"', r"\\(lq\1\\(rq", text)
 
 
-def paragraph(text):
-    """Lines of a page; none begins with a dot."""
-    return "".join(f"{line}\n" for line in textwrap.wrap(roff(text), 98, break_on_hyphens=False)).replace("\n.", "\n\\&.")
-
-
 def row(word, said):
     """Two columns, which fit into 80 with the indent of a page."""
     lines = "\n".join(textwrap.wrap(said, 73 - COLUMN, break_on_hyphens=False))
@@ -59,12 +54,11 @@ def row(word, said):
 
 
 def qualities(texts):
-    table, public = texts[words.TABLE], texts[words.PUBLIC]
-    out = ".TP\n.BR good \", 0xC0, 192\"\nThe value can be used.\n"
-    for names, word, cause, _ in words.rows(table, "QUALITY"):
-        number = int(re.search(rf"\bOWS_Q_{names.split(', ')[0]} = (0x\w+)", public)[1], 16)
-        out += f'.TP\n.BR "{word}" ", 0x{number:02X}, {number}"\n{paragraph(cause)}'
-    return out
+    found = [("good", 0xC0)]
+    for names, word, *_ in words.rows(texts[words.TABLE], "QUALITY"):
+        code = re.search(rf"\bOWS_Q_{names.split(', ')[0]} = (0x\w+)", texts[words.PUBLIC])[1]
+        found.append((word, int(code, 16)))
+    return ".PP\n.nf\n" + "".join(row(word, f"0x{number:02X}  {number}") for word, number in found) + ".fi\n"
 
 
 def lists(texts):
