@@ -31,7 +31,6 @@ OTHERWISE = [
      r"\g<0> >sim.log 2>&1 & for i in $(seq 100); do owsctl get living >/dev/null 2>&1 && break; sleep 0.2; done",
      "it has a terminal of its own, and a person is slower"),
     (r"(serial=.*<)/sys/\S+( .*)", r"\1serial-number\2", "there is no Raspberry Pi"),
-    (r"owsctl config plant\.rio .*", r"cp new.rio plant.rio; \g<0>", "plant.rio is of the scan"),
     (r"ansible-playbook .*", None, "test_fleet.py has Ansible do it"),
 ]
 # A machine with a user, as its image has them, a house instead of an adapter, and files that pages
