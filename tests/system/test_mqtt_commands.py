@@ -190,6 +190,19 @@ def test_a_list_has_the_devices_of_the_table_and_those_that_were_found(scene):
     assert sorted(found) == sorted([SENSOR, "28.FFFFFFFFFFFF"]) and answer["searched"] is False and answer["why"], answer
 
 
+def test_where_owsd_has_never_run_a_list_is_refused_in_words(scene):
+    house = ready(scene)
+    assert house.face.stop() == 0 and house.daemon.stop() == 0
+    listens, log = "owsd/pi7/+/get (QoS 1)", house.broker.process.log
+    before = log().count(listens)
+    house.face = house.start()
+    until(lambda: log().count(listens) > before, 20, log)
+    publish(house, "owsd/pi7/chip/get", '{"id":"a1"}')
+    answer = house.arrives("chip/result", lambda m: m["id"] == "a1")
+    assert answer == {"searched": False, "why": "owsd is away, or reloads: try again", "id": "a1"}, answer
+    assert house.face.running()
+
+
 def test_a_question_is_answered_once_while_the_broker_is_asked_what_it_keeps(scene):
     house = ready(scene)
     house.arrives("room", lambda m: m["good"])

@@ -22,10 +22,12 @@
 static int connect_to(const struct face *face, const char *what)
 {
 	struct sockaddr_un to = {.sun_family = AF_UNIX};
-	int n = snprintf(to.sun_path, sizeof(to.sun_path), "%s/%s.%s", open_dir(face->ows),
-	                 face->arguments->instance, what);
-	int fd, err;
+	int n, fd, err;
 
+	if (!face->ows)
+		return -ENOENT;
+	n = snprintf(to.sun_path, sizeof(to.sun_path), "%s/%s.%s", open_dir(face->ows),
+	             face->arguments->instance, what);
 	if (n < 0 || (size_t)n >= sizeof(to.sun_path))
 		return -ENAMETOOLONG;
 	fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);

@@ -140,6 +140,16 @@ static void test_where_nobody_listens_it_does_not_begin(void)
 	door = dup(0);
 }
 
+static void test_before_owsd_was_ever_seen_it_does_not_begin(void)
+{
+	struct ows *ows = face.ows;
+
+	face.ows = NULL;
+	TEST_ASSERT_EQUAL_INT(-ENOENT, begin());
+	TEST_ASSERT_EQUAL_INT(ERRAND_NONE, errand.kind);
+	face.ows = ows;
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -147,5 +157,6 @@ int main(void)
 	RUN_TEST(test_one_that_sends_without_end_is_cut);
 	RUN_TEST(test_its_time_is_over_after_a_while);
 	RUN_TEST(test_where_nobody_listens_it_does_not_begin);
+	RUN_TEST(test_before_owsd_was_ever_seen_it_does_not_begin);
 	return UNITY_END();
 }
