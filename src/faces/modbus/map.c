@@ -134,6 +134,16 @@ int map_place(struct map *map, const char *identity)
 	return err ? err : (int)place;
 }
 
+void map_join(struct map *map, const struct map *other)
+{
+	for (unsigned i = 1; i <= other->last; i++) {
+		const char *identity = other->places[i].identity;
+
+		if (identity && !map->places[i].identity && !map_known(map, identity))
+			map_put(map, i, identity);
+	}
+}
+
 void map_free(struct map *map)
 {
 	for (unsigned i = 1; i <= map->last; i++)

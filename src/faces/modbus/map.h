@@ -38,6 +38,8 @@ int map_write(const struct map *map, const char *path);
 unsigned map_known(const struct map *map, const char *identity);
 /* The place of the identity, after all others if it has none. -ENOSPC, -ENOMEM. Pure. */
 int map_place(struct map *map, const char *identity);
+/* Take what another map has besides, at places that are free here. */
+void map_join(struct map *map, const struct map *other);
 void map_free(struct map *map);
 
 #define MAP_PATH 264

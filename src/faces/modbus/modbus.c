@@ -16,6 +16,8 @@
 #define HEART_NS (100 * NS_PER_MS)
 /* Clients read the image themselves: of changes only the time of the newest is of use */
 #define PACE_NS (500 * NS_PER_MS)
+/* A map that cannot be read or written is tried again after that time */
+#define AGAIN_NS (10 * NS_PER_S)
 
 /* --- Rows ------------------------------------------------------------------------------------ */
 
@@ -202,51 +204,85 @@ static bool read_map(struct modbus *m, const char *path)
 
 	if (!err || (err == -ENOENT && path == m->path))
 		return true;
-	log_err(m->face->log, "the map %s, line %u: %s: no signal is served until it can be read",
-	        path, line, err == -EINVAL ? "no place and identity" : strerror(-err));
+	if (err != m->told)
+		log_err(m->face->log,
+		        "the map %s, line %u: %s: no signal is served until it can be read", path,
+		        line, err == -EINVAL ? "no place and identity" : strerror(-err));
+	m->told = err;
 	return false;
 }
 
 static void keep_map(struct modbus *m)
 {
-	int err = *m->path ? map_write(&m->map, m->path) : -ENOENT;
+	int err = *m->path ? history_make_above(m->path) : -ENOENT;
 
+	if (!err)
+		err = map_write(&m->map, m->path);
 	m->kept = !err;
-	if (err)
+	if (err && err != m->told)
 		log_err(m->face->log,
 		        "the map %s cannot be written: %s: addresses may be others after the next "
 		        "start",
 		        m->path, strerror(-err));
+	m->told = err;
 }
 
 /*
- * Places of the configuration win, then those that were given before; new ones are kept. With a map
- * that cannot be read an address could be that of another signal: then there is none.
+ * Places of the configuration win, then those that were given before, in the file and, as long as
+ * it cannot be written, in memory; new ones are kept. With a map that cannot be read an address
+ * could be that of another signal: then there is none.
  */
 static void make_places(struct modbus *m)
 {
+	struct map before = m->map;
 	const struct config_modbus *options = &m->face->config->modbus;
 	const char *fixed = options->map;
 	int count = m->face->ows ? ows_count(m->face->ows) : 0;
 	unsigned left_out = 0, last;
 
-	map_free(&m->map);
+	m->again_ns = ows_now() + AGAIN_NS;
+	m->map = (struct map){0};
 	m->signals = 0;
 	m->known = !options->given ||
 	           ((!fixed || read_map(m, fixed)) && (!*m->path || read_map(m, m->path)));
 	if (!m->known)
 		map_free(&m->map);
+	else if (!m->kept)
+		map_join(&m->map, &before);
+	map_free(&before);
 	if (!m->known || !options->given)
 		return;
 	last = m->map.last;
 	for (int i = 0; i < count; i++)
 		left_out += !place_signal(m, i);
-	if (left_out)
+	if (left_out && !m->told)
 		log_err(m->face->log, "%u signals have no address: there are %d", left_out,
 		        LAYOUT_PLACES - 1);
 	/* it has the fixed places, too: owsctl reads it */
 	if (m->map.last != last || !m->kept || fixed)
 		keep_map(m);
+}
+
+/* Nothing more can be done for the map. */
+static bool is_well(const struct modbus *m)
+{
+	return m->known && (m->kept || !*m->path);
+}
+
+/* A disk that was full has room again, or what could not be read is mounted. */
+static void try_again(struct modbus *m, int64_t now_ns)
+{
+	if (is_well(m) || now_ns < m->again_ns)
+		return;
+	m->again_ns = now_ns + AGAIN_NS;
+	if (m->face->live && !look_is_current(m->face))
+		return;
+	make_places(m);
+	if (!is_well(m))
+		return;
+	m->told = 0;
+	log_notice(m->face->log, "the map %s is read and written: %u signals are served", m->path,
+	           m->signals);
 }
 
 /* The map belongs to one program alone. */
@@ -282,6 +318,8 @@ static void run(struct modbus *m)
 
 	m->face->tick_ns = earlier_ns(clients_tick(&m->clients, now_ns),
 	                              writing_tick(&m->writing, now_ns));
+	if (!is_well(m))
+		m->face->tick_ns = earlier_ns(m->face->tick_ns, m->again_ns);
 	show_status(m);
 }
 
@@ -293,6 +331,7 @@ static void follow_file(struct modbus *m)
 		log_notice(m->face->log, "%s has no Modbus block: nothing is served",
 		           m->face->arguments->file);
 	m->idle = !options->given;
+	m->told = 0;
 	m->source.unit = options->unit;
 	m->source.little = !strcmp(options->word_order, "little");
 	m->source.exceptions = !strcmp(options->bad_value, "exception");
@@ -327,8 +366,8 @@ int modbus_open(struct face *face)
 		return err;
 	}
 	m->kept = true;
-	make_places(m);
 	follow_file(m);
+	make_places(m);
 	run(m);
 	return 0;
 }
@@ -382,7 +421,7 @@ void modbus_event(struct face *face, const struct face_event *event)
 
 void modbus_tick(struct face *face, int64_t now_ns)
 {
-	(void)now_ns;
+	try_again(face->own, now_ns);
 	run(face->own);
 }
 

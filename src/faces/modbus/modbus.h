@@ -29,6 +29,8 @@ struct modbus {
 	int lock;            /* of its directory; below 0: none */
 	unsigned signals, decimals;
 	bool known, kept; /* the map was read; it is in its file */
+	int told;         /* why the one or the other is not so, as the log has it; 0: well */
+	int64_t again_ns; /* when that is tried again */
 	bool idle;        /* there is no block */
 	uint32_t generation;
 	uint16_t heart;

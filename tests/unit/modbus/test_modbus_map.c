@@ -45,6 +45,21 @@ static void test_each_identity_gets_the_next_place_and_keeps_it(void)
 	TEST_ASSERT_EQUAL_UINT(2, map.last);
 }
 
+static void test_another_map_gives_what_is_free_here(void)
+{
+	static struct map other;
+
+	map_place(&map, "/28.1/temperature");
+	map_place(&other, "/28.2/temperature");
+	map_place(&other, "/28.3/temperature");
+	map_place(&other, "/28.1/temperature");
+	map_join(&map, &other);
+	map_free(&other);
+	TEST_ASSERT_EQUAL_INT(1, map_place(&map, "/28.1/temperature"));
+	TEST_ASSERT_EQUAL_INT(2, map_place(&map, "/28.3/temperature"));
+	TEST_ASSERT_EQUAL_INT(3, map_place(&map, "/28.2/temperature"));
+}
+
 static void test_a_file_gives_back_the_places_and_none_of_them_to_another(void)
 {
 	unsigned line;
@@ -127,6 +142,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_identity_gets_the_next_place_and_keeps_it);
+	RUN_TEST(test_another_map_gives_what_is_free_here);
 	RUN_TEST(test_a_file_gives_back_the_places_and_none_of_them_to_another);
 	RUN_TEST(test_of_two_files_the_first_wins);
 	RUN_TEST(test_a_line_is_a_place_and_an_identity);
