@@ -141,6 +141,9 @@ test("a value is late after three usual intervals", () => {
 	assert.ok(!isLate({}, 1e6) && !isLate({interval: 1}, null));
 	assert.ok(isLate({gap: 2}, 7), "what the page saw, until owsd-web says it");
 	assert.ok(looks({interval: 1}, 34).late && !looks({interval: 1}, 34).needs);
+	assert.ok(isLate({interval: 1, deadband: 0}, 34));
+	assert.ok(!isLate({interval: 1, deadband: 0.5}, 34) && !isLate({gap: 2, deadband: 0.5}, 1e6),
+		"of what stays within it no page hears");
 });
 
 test("the sentence is the answer", () => {

@@ -398,6 +398,7 @@ void mqtt_tick(struct face *face, int64_t now_ns)
 	broker_tick(&m->broker, now_ns);
 	if (errand_late(&m->errand, now_ns))
 		m->broker.ops->answered(m);
+	stream_repeat(&m->stream, now_ns);
 	go_on(face, now_ns);
 	show_status(face);
 }

@@ -465,6 +465,19 @@ void stream_changes(struct stream *s, const int *signals, int n)
 			queue_row(s, signals ? signals[i] : i);
 }
 
+/* An update within Deadband is no change. */
+void stream_repeat(struct stream *s, int64_t now_ns)
+{
+	for (int i = 0; s->live && !s->profile->session && i < s->count; i++) {
+		const struct row *row = &s->rows[i];
+		int64_t repeat_ns = stream_repeat_ns(&row->info);
+
+		if (repeat_ns && row->published && row->good &&
+		    now_ns - row->published_ns >= repeat_ns)
+			queue_row(s, i);
+	}
+}
+
 void stream_live(struct stream *s, bool live)
 {
 	if (s->live == live)

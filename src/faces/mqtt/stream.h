@@ -256,6 +256,8 @@ const char *stream_below(const char *topic, const char *prefix);
 void stream_gone(struct stream *s, const char *topic, const char *text);
 /* Signals have news, as in face_ops.changes. */
 void stream_changes(struct stream *s, const int *signals, int n);
+/* Signals whose value has to be published again have news, though no change came. */
+void stream_repeat(struct stream *s, int64_t now_ns);
 /* All is to be published, as to a broker that knows nothing. */
 void stream_begin(struct stream *s);
 /* What there is is to be announced again; all: also what the broker has, as it is now. */

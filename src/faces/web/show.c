@@ -147,6 +147,7 @@ void show_signal(struct json *json, const struct show *show, int signal)
 		json_seconds(json, "interval", interval);
 	else
 		json_null(json, "interval");
+	json_double(json, "deadband", info.deadband);
 	put_text(json, "unit", info.unit);
 	json_known(json, "decimals", info.decimals);
 	put_text(json, "description", info.description);

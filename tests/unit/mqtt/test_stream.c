@@ -113,6 +113,39 @@ static void test_the_same_value_is_said_again_after_half_of_its_time_alone(void)
 	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":22"));
 }
 
+static void test_a_value_of_which_no_change_comes_is_said_again_by_time(void)
+{
+	int64_t now_ns;
+
+	instance_put_double(&in, ROOM + 1, 21.5, ows_now());
+	pump();
+	instance_put_double(&in, ROOM + 1, 21.6, ows_now()); /* within Deadband: no change */
+	now_ns = ows_now();
+	s.rows[ROOM].published_ns = now_ns - 2 * S + 1;
+	stream_repeat(&s, now_ns);
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	s.rows[ROOM].published_ns = now_ns - 2 * S;
+	stream_repeat(&s, now_ns);
+	stream_repeat(&s, now_ns);
+	TEST_ASSERT_EQUAL_STRING("o/pi/room {\"v\":21.6,\"good\":true,\"q\":192,\"t\":null}\n",
+	                         pump());
+	stream_repeat(&s, ows_now());
+	TEST_ASSERT_EQUAL_STRING("", pump());
+	/* what is not good now is said as that, and not again; likewise an owsd that is lost */
+	s.rows[ROOM].published_ns -= 2 * S;
+	instance_put_double(&in, ROOM + 1, 85, ows_now() - 10 * S);
+	stream_repeat(&s, ows_now());
+	TEST_ASSERT_NOT_NULL(strstr(pump(), "o/pi/room {\"v\":null,\"good\":false,"));
+	s.rows[ROOM].published_ns -= 2 * S;
+	stream_repeat(&s, ows_now());
+	TEST_ASSERT_EQUAL_INT(0, s.queue_len);
+	stream_live(&s, false);
+	pump();
+	s.rows[ROOM].good = true;
+	stream_repeat(&s, ows_now());
+	TEST_ASSERT_EQUAL_INT(0, s.queue_len);
+}
+
 static void test_a_bad_value_has_no_number(void)
 {
 	instance_put_double(&in, ROOM + 1, 85, ows_now() - 10 * S);
@@ -541,6 +574,7 @@ int main(void)
 	RUN_TEST(test_the_birth_has_all_and_the_state_is_last);
 	RUN_TEST(test_the_time_is_there_when_the_clock_is_right);
 	RUN_TEST(test_the_same_value_is_said_again_after_half_of_its_time_alone);
+	RUN_TEST(test_a_value_of_which_no_change_comes_is_said_again_by_time);
 	RUN_TEST(test_a_bad_value_has_no_number);
 	RUN_TEST(test_what_has_no_room_comes_later_with_its_newest_value_and_nothing_twice);
 	RUN_TEST(test_a_chip_is_unknown_until_it_has_answered);

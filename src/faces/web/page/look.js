@@ -6,10 +6,10 @@ const INITIAL = 0x20, STALE = 0x14, DIFFERS = 0x1c;
 const LATE_AFTER = 3;   // usual intervals
 const LATE_LEAST = 3;   // s: a page hears of a value within a second or two
 
-/** Is the value older than its signal usually gets? */
+/** Is the value older than its signal usually gets? A page hears of none within Deadband. */
 export function isLate(signal, age) {
 	const usual = signal.gap ?? signal.interval; // that of owsd is from its start on
-	return usual > 0 && age !== null && age > Math.max(LATE_AFTER * usual, LATE_LEAST);
+	return !(signal.deadband > 0) && usual > 0 && age !== null && age > Math.max(LATE_AFTER * usual, LATE_LEAST);
 }
 
 /** Since when it is as it is, ms: as the page saw it, else its last measurement; null: unknown. */
