@@ -13,6 +13,7 @@
 struct head {
 	int64_t time_ns;
 	uint32_t size; /* with NUL */
+	bool dated;    /* by the wall clock */
 };
 
 void pending_free(struct pending *pending)
@@ -50,7 +51,7 @@ static void drop_quarter(struct pending *pending)
 		struct head head = head_at(pending, at);
 
 		at += sizeof(head) + head.size;
-		if (head.time_ns > pending->dropped_ns)
+		if (!head.dated && head.time_ns > pending->dropped_ns)
 			pending->dropped_ns = head.time_ns;
 	}
 	remove_first(pending, at, lines);
@@ -75,11 +76,11 @@ static bool room_for_line(struct pending *pending, size_t size)
 	return true;
 }
 
-void pending_add(struct pending *pending, int64_t time_ns, const char *series, const char *fields)
+static void add(struct pending *pending, struct head head, const char *series, const char *fields)
 {
 	size_t size = strlen(series) + 1 + strlen(fields) + 1;
-	struct head head = {.time_ns = time_ns, .size = (uint32_t)size};
 
+	head.size = (uint32_t)size;
 	if (!room_for_line(pending, sizeof(head) + size)) {
 		pending->dropped++;
 		return;
@@ -89,6 +90,17 @@ void pending_add(struct pending *pending, int64_t time_ns, const char *series, c
 	snprintf(pending->data + pending->len, size, "%s %s", series, fields);
 	pending->len += size;
 	pending->lines++;
+}
+
+void pending_add(struct pending *pending, int64_t time_ns, const char *series, const char *fields)
+{
+	add(pending, (struct head){.time_ns = time_ns}, series, fields);
+}
+
+void pending_add_dated(struct pending *pending, int64_t wall_ns, const char *series,
+                       const char *fields)
+{
+	add(pending, (struct head){.time_ns = wall_ns, .dated = true}, series, fields);
 }
 
 size_t pending_copy(const struct pending *pending, int64_t offset_ns, size_t most,
@@ -105,7 +117,8 @@ size_t pending_copy(const struct pending *pending, int64_t offset_ns, size_t mos
 			break;
 		at += sizeof(head);
 		len += (size_t)snprintf(batch + len, head.size + TIME_TEXT, "%s %" PRId64 "\n",
-		                        pending->data + at, head.time_ns + offset_ns);
+		                        pending->data + at,
+		                        head.time_ns + (head.dated ? 0 : offset_ns));
 		at += head.size;
 	}
 	return len;

@@ -36,7 +36,8 @@ void sending_look_at_dropped(struct face *face)
 	            (unsigned long long)(p->pending.dropped - p->lost_lines),
 	            p->missed.there ? ", and will come from the history" : "");
 	p->lost_lines = p->pending.dropped;
-	p->missed_ns = p->pending.dropped_ns + 1;
+	if (p->pending.dropped_ns > p->missed_ns)
+		p->missed_ns = p->pending.dropped_ns + 1;
 	p->rows_end = 0; /* they are read once more */
 }
 
@@ -45,16 +46,21 @@ static void add_row(struct pushing *p, const struct replay_row *row)
 {
 	bool gap = row->signal == -1;
 	int first = gap ? 0 : row->signal, end = gap ? p->points.count : row->signal + 1;
+	bool earlier = row->at.boot != p->missed.boot;
 	struct ows_value v = row->v;
 	char fields[INFLUX_FIELDS + 16];
 
 	if (gap)
 		v = (struct ows_value){.quality = OWS_Q_STALE};
 	points_fields(&v, row->text ? row->text : "", fields, sizeof(fields));
-	for (int i = first; i >= 0 && i < end; i++)
-		if (p->points.rows[i].series)
-			pending_add(&p->pending, row->wall_us * 1000 - p->clock.offset_ns,
-			            p->points.rows[i].series, fields);
+	for (int i = first; i >= 0 && i < end; i++) {
+		const char *series = p->points.rows[i].series;
+
+		if (series && earlier)
+			pending_add_dated(&p->pending, row->wall_us * 1000, series, fields);
+		else if (series)
+			pending_add(&p->pending, row->at.us * 1000, series, fields);
+	}
 }
 
 static void take_rows(struct face *face, int64_t now_ns)

@@ -51,6 +51,27 @@ static void test_a_batch_has_the_time_that_is_known_when_it_is_made(void)
 	TEST_ASSERT_EQUAL_UINT(0, pending.lines);
 }
 
+static void test_a_line_of_a_wall_clock_time_keeps_it(void)
+{
+	pending_add(&pending, 5, "s", "value=1");
+	pending_add_dated(&pending, INT64_C(1600000000000000000), "s", "value=2");
+	pending_copy(&pending, 1000, BATCH_BYTES, batch, &lines);
+	cut(INT64_C(1700000000000000000));
+	TEST_ASSERT_EQUAL_STRING("s value=1 1700000000000000005\n"
+	                         "s value=2 1600000000000000000\n",
+	                         batch);
+}
+
+static void test_a_dropped_line_of_a_wall_clock_time_has_no_boot_time(void)
+{
+	static char fields[1000];
+
+	memset(fields, 'x', sizeof(fields) - 1);
+	for (int64_t i = 0; !pending.dropped; i++)
+		pending_add_dated(&pending, INT64_C(1600000000000000000) + i, "s", fields);
+	TEST_ASSERT_EQUAL_INT64(0, pending.dropped_ns);
+}
+
 static void test_lines_stay_until_they_are_removed_by_their_numbers(void)
 {
 	uint64_t end;
@@ -138,6 +159,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_batch_has_the_time_that_is_known_when_it_is_made);
+	RUN_TEST(test_a_line_of_a_wall_clock_time_keeps_it);
+	RUN_TEST(test_a_dropped_line_of_a_wall_clock_time_has_no_boot_time);
 	RUN_TEST(test_lines_stay_until_they_are_removed_by_their_numbers);
 	RUN_TEST(test_a_server_that_takes_less_gets_whole_lines_and_one_at_least);
 	RUN_TEST(test_a_batch_has_at_most_5000_lines_and_the_rest_comes_next);

@@ -78,14 +78,19 @@ static bool info_of(void *ctx, int row, struct ows_info *info)
 static const struct history_signal table[] = {{"room", "", OWS_DOUBLE, 0, 2, "/28.1/temperature"},
                                               {"lamp", "", OWS_BOOL, 1, -1, "/29.1/PIO.0"}};
 
-static void record(void)
+static void record_boot(int64_t boot)
 {
 	const struct history_options options = {
-		.directory = history, .boot = history_boot_present(), .flush_ns = 60 * S};
+		.directory = history, .boot = boot, .flush_ns = 60 * S};
 
 	TEST_ASSERT_EQUAL_INT(0, history_writer_open(&options, start_ns, offset(), true, &writer));
 	TEST_ASSERT_EQUAL_INT(0, history_writer_signals(writer, table, COUNT, start_ns));
 	history_writer_begin(writer, start_ns);
+}
+
+static void record(void)
+{
+	record_boot(history_boot_present());
 }
 
 static void room(int64_t at_ns, double value)
@@ -374,6 +379,83 @@ static void test_rows_that_memory_drops_are_read_again(void)
 	free(text);
 }
 
+/* The line of that text in the last POST; to be freed. */
+static char *line_of(const char *text)
+{
+	const char *at = strstr(posted, text);
+
+	TEST_ASSERT_NOT_NULL_MESSAGE(at, posted);
+	return strndup(at, strcspn(at, "\n"));
+}
+
+static const char *const row = "signal=room value=21,quality=192i ";
+
+/* A row that was recorded in that boot is in memory, and its batch under way. */
+static void read_row_of(int64_t boot)
+{
+	record_boot(boot);
+	room(now_ns, 20);
+	history_writer_flush(writer, now_ns + S);
+	begin();
+	p->missed.boot = boot;
+	p->missed.reached = missed_point(&p->missed, now_ns);
+	missed_keep(&p->missed, 0, now_ns);
+	room(now_ns + 20 * S, 21);
+	start_ns = now_ns += 60 * S;
+	if (boot != history_boot_present()) {
+		history_writer_close(writer, now_ns);
+		record();
+	}
+	written();
+	begin();
+	add(1);
+	TEST_ASSERT_TRUE(after(S));
+	answer(204);
+	TEST_ASSERT_TRUE(after(S));
+	has(posted, row);
+}
+
+/* The clock is set between two attempts to send what was read. */
+static void set_clock_meanwhile(int64_t boot, int64_t moved_ns)
+{
+	char *before, *then;
+
+	read_row_of(boot);
+	before = line_of(row);
+	answer(503);
+	p->clock.offset_ns += 7200 * S;
+	TEST_ASSERT_TRUE(after(p->next_ns - now_ns));
+	then = line_of(row);
+	TEST_ASSERT_EQUAL_INT64(moved_ns, strtoll(then + strlen(row), NULL, 10) -
+	                                          strtoll(before + strlen(row), NULL, 10));
+	free(before);
+	free(then);
+}
+
+static void test_a_row_of_this_boot_gets_its_time_by_the_clock_that_was_set_meanwhile(void)
+{
+	set_clock_meanwhile(history_boot_present(), 7200 * S);
+}
+
+static void test_a_row_of_an_earlier_boot_keeps_its_time(void)
+{
+	set_clock_meanwhile(history_boot_present() + 1, 0);
+}
+
+static void test_rows_of_an_earlier_boot_that_memory_drops_are_read_again(void)
+{
+	char *text;
+
+	read_row_of(history_boot_present() + 1);
+	answer(503);
+	fill_memory();
+	written();
+	text = taken(90);
+	has(text, row);
+	TEST_ASSERT_EQUAL_INT(0, p->missed.count);
+	free(text);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -384,5 +466,8 @@ int main(void)
 	RUN_TEST(test_what_was_not_running_is_a_stretch_and_a_gap_has_a_quality_alone);
 	RUN_TEST(test_what_was_written_when_a_signal_had_another_type_is_not_sent);
 	RUN_TEST(test_rows_that_memory_drops_are_read_again);
+	RUN_TEST(test_a_row_of_this_boot_gets_its_time_by_the_clock_that_was_set_meanwhile);
+	RUN_TEST(test_a_row_of_an_earlier_boot_keeps_its_time);
+	RUN_TEST(test_rows_of_an_earlier_boot_that_memory_drops_are_read_again);
 	return UNITY_END();
 }
