@@ -262,7 +262,10 @@ static void restore_outputs(struct engine *e, const char *path)
 	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
 		if (!s->command.given || !signal_writes(s) || !same_latch(&split, s->item->path))
 			continue;
-		s->command.forced = true;
+		if (signal_repeats(s))
+			s->command.forced = true;
+		else
+			signal_forget_written(s);
 		engine_write_check(e, s);
 		engine_publish(e, s);
 	}

@@ -146,9 +146,9 @@ void signal_rescale(struct signal *s, const struct signal *was)
 		if (is_judged(s->sample.quality))
 			s->sample.quality = quality;
 	}
-	/* a command stays in force: it goes out again where it has another raw value now */
+	/* a command stays in force, and may have another raw value now */
 	if (raw_of(s, s->command.value, &raw) || value_of_double(raw) != s->scaling.written)
-		s->command.confirmed = false;
+		signal_forget_written(s);
 	else if (s->item->output && s->command.confirmed && is_judged(s->sample.quality))
 		signal_reads_as_written(s, &s->sample.quality);
 }

@@ -48,7 +48,7 @@ struct signal_command {
 	bool confirmed; /* written is what the bus has */
 	bool agrees;    /* it was read back as it was written */
 	bool differs;   /* it reads otherwise than it was written */
-	bool lapsed;    /* its target was down since: a command goes out, the same value too */
+	bool lapsed;    /* the bus may not have it since: a command goes out, the same value too */
 	bool doubted;   /* it did so once: it is read again, past the cache */
 	bool one_shot;  /* write once more, changed or not */
 	bool forced;    /* a write in doubt ended late: the present value goes out again */
@@ -219,12 +219,21 @@ static inline bool signal_writes(const struct signal *s)
 	return s->attrs.flags & OWS_ATTR_WRITE_ENABLE;
 }
 /*
- * The device may have lost what was written to it: an output's command goes out again. A set of an
- * input was an event: owsd does not undo what became of it since.
+ * Does a command that was written go out again where the device may not have it any more? A set of
+ * an input was an event: owsd does not undo what became of it since.
+ */
+static inline bool signal_repeats(const struct signal *s)
+{
+	return s->item->output;
+}
+/*
+ * The device may not have any more what was written to it. The next command goes out, the same
+ * value too.
  */
 static inline void signal_forget_written(struct signal *s)
 {
-	s->command.confirmed &= !s->item->output;
+	s->command.lapsed |= s->command.confirmed;
+	s->command.confirmed &= !signal_repeats(s);
 }
 /* Its target or its device is lost: remember how it stood. */
 void signal_hold(struct signal *s);

@@ -247,6 +247,24 @@ static void test_an_output_over_which_a_guest_wrote_is_written_again(void)
 	TEST_ASSERT_EQUAL_STRING("W /29.B89115000000/PIO.BYTE=0\nW " PIO "=1\n", s.trace);
 }
 
+/* A set of an input was an event, and what a guest writes is the next one. */
+static void test_an_input_over_which_a_guest_wrote_is_left_to_the_next_set(void)
+{
+	scene_input(&s, "setpoint", PIO, OWS_BOOL)->writable = true;
+	scene_put(&s, PIO, "0", 0);
+	scene_start(&s);
+	scene_set(&s, 1, 1);
+	scene_up(&s);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING("1", scene_at(&s, PIO));
+	ask(BUS_WRITE, GUEST_ANY_LANE, PIO, "0");
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("0", scene_at(&s, PIO));
+	scene_set(&s, 1, 1);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING("1", scene_at(&s, PIO));
+}
+
 /* Nobody waits for what a guest asks that has left; what it writes is written. */
 static void test_who_left_is_asked_for_nothing_more_but_what_he_wrote(void)
 {
@@ -290,6 +308,7 @@ int main(void)
 	RUN_TEST(test_a_long_value_has_as_many_times_the_time_as_it_has_parts);
 	RUN_TEST(test_a_bus_that_does_one_thing_at_a_time_has_once_the_time_for_all);
 	RUN_TEST(test_an_output_over_which_a_guest_wrote_is_written_again);
+	RUN_TEST(test_an_input_over_which_a_guest_wrote_is_left_to_the_next_set);
 	RUN_TEST(test_who_left_is_asked_for_nothing_more_but_what_he_wrote);
 	return UNITY_END();
 }

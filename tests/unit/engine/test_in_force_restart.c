@@ -3,6 +3,8 @@
  * Which command is in force after a restart of owsd: the table of docs/semantics.md, section 3,
  * cell by cell, and commands that were superseded.
  */
+#include <string.h>
+
 #include "unity.h"
 
 #include "src/daemon/engine/command/intake.h"
@@ -282,6 +284,79 @@ static void test_a_text_is_withheld_and_comes_back_with_its_controller(void)
 	TEST_ASSERT_EQUAL_STRING("W /28.551DDF030000/alias=none\n", s.trace);
 }
 
+/* --- An input with Writable on ---------------------------------------------------------------- */
+
+/*
+ * A set of it was an event, which owsd does not repeat: the device may have counted on since. But
+ * that its program is lost is another event.
+ */
+#define CLOCK "/27.000000000001/udate"
+
+static void a_clock(bool safe)
+{
+	struct config_item *item = scene_input(&s, "clock", CLOCK, OWS_DWORD);
+
+	item->writable = true;
+	item->has_safe = safe;
+	item->safe_value = SAFE;
+	scene_put(&s, CLOCK, "0", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_join(&s, 1, 2);
+	giving_beat(&s.controllers[1], BEAT_MS);
+	scene_set_by(&s, 1, 1, NEXT);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_STRING("30", scene_at(&s, CLOCK));
+	restart_owsd();
+	scene_put(&s, CLOCK, "31", 0);
+}
+
+static void test_what_was_set_of_an_input_is_not_written_when_its_controller_comes_back(void)
+{
+	a_clock(false);
+	for (int i = 0; i < 2; i++) {
+		come_back();
+		beat_on(5 * SCENE_S);
+		TEST_ASSERT_EQUAL_STRING("31", scene_at(&s, CLOCK));
+		TEST_ASSERT_EQUAL_INT64(31, scene_sample(&s, 1).value);
+		TEST_ASSERT_EQUAL_UINT(OWS_REASON_RETURNED, scene_origin(&s, 1).reason);
+		restart_owsd();
+	}
+	come_back();
+	beat_on(SCENE_S);
+	scene_set_by(&s, 1, 1, NEXT); /* the same number is another set */
+	beat_on(SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("30", scene_at(&s, CLOCK));
+}
+
+static void test_of_an_input_nothing_is_written_when_its_controller_does_not_come_back(void)
+{
+	a_clock(false);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W "));
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_NONE, scene_origin(&s, 1).reason);
+}
+
+static void test_an_input_gets_its_safevalue_once_when_its_controller_is_lost(void)
+{
+	a_clock(true);
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("20", scene_at(&s, CLOCK));
+	restart_owsd();
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W "));
+}
+
+static void test_an_input_gets_its_safevalue_when_a_controller_that_came_back_is_lost(void)
+{
+	a_clock(true);
+	come_back();
+	beat_on(5 * SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W "));
+	scene_run(&s, 5 * SCENE_S); /* it hangs */
+	TEST_ASSERT_EQUAL_STRING("20", scene_at(&s, CLOCK));
+}
+
 /* --- Superseded commands ---------------------------------------------------------------------- */
 
 static void test_a_superseded_command_does_not_come_back_with_its_controller(void)
@@ -358,6 +433,10 @@ int main(void)
 	RUN_TEST(test_a_set_while_the_controller_is_awaited_counts_at_once);
 	RUN_TEST(test_a_one_shot_does_not_write_what_is_not_in_force);
 	RUN_TEST(test_a_text_is_withheld_and_comes_back_with_its_controller);
+	RUN_TEST(test_what_was_set_of_an_input_is_not_written_when_its_controller_comes_back);
+	RUN_TEST(test_of_an_input_nothing_is_written_when_its_controller_does_not_come_back);
+	RUN_TEST(test_an_input_gets_its_safevalue_once_when_its_controller_is_lost);
+	RUN_TEST(test_an_input_gets_its_safevalue_when_a_controller_that_came_back_is_lost);
 	RUN_TEST(test_a_superseded_command_does_not_come_back_with_its_controller);
 	RUN_TEST(test_a_superseded_controller_that_dies_leaves_the_outputs_as_they_are);
 	RUN_TEST(test_of_two_controllers_that_beat_the_one_in_force_comes_back);

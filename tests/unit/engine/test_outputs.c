@@ -166,6 +166,10 @@ static void test_what_was_written_to_an_input_is_not_written_again_when_its_devi
 	scene_run(&s, 10 * SCENE_S);
 	TEST_ASSERT_EQUAL_INT64(8, scene_sample(&s, 1).value);
 	TEST_ASSERT_EQUAL_UINT(3, s.writes);
+	/* the same number is another set */
+	scene_set(&s, 1, 3);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("3", scene_at(&s, PIO));
 	/* but what could not be written to it is */
 	scene_put(&s, PIO, NULL, -ENODEV);
 	scene_run(&s, 2 * SCENE_S);

@@ -447,6 +447,20 @@ static void test_a_reload_that_changes_the_scale_writes_the_command_in_it(void)
 	TEST_ASSERT_EQUAL_DOUBLE(20, scene_number(&s, 1));
 }
 
+/* A set of an input was an event: by then it may stand otherwise at the device. */
+static void test_a_reload_that_changes_the_scale_writes_no_set_of_an_input(void)
+{
+	valve()->output = false;
+	start();
+	command(1, 20);
+	TEST_ASSERT_EQUAL_STRING("51", scene_at(&s, WIPER));
+	scene_reload(&s, tenths);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("51", scene_at(&s, WIPER));
+	command(1, 20); /* the same number is another set */
+	TEST_ASSERT_EQUAL_STRING("40", scene_at(&s, WIPER));
+}
+
 static void wider(struct config *config)
 {
 	config->items[0].scale.has_max = true;
@@ -647,6 +661,7 @@ int main(void)
 	RUN_TEST(test_an_output_is_read_back_as_it_was_written);
 	RUN_TEST(test_a_reload_that_changes_the_scale_shows_the_value_in_it_at_once);
 	RUN_TEST(test_a_reload_that_changes_the_scale_writes_the_command_in_it);
+	RUN_TEST(test_a_reload_that_changes_the_scale_writes_no_set_of_an_input);
 	RUN_TEST(test_a_reload_that_changes_the_range_alone_writes_nothing);
 	RUN_TEST(test_a_command_that_a_reload_puts_out_of_range_is_not_written);
 	RUN_TEST(test_the_filter_goes_on_over_a_reload_that_leaves_it);

@@ -99,7 +99,7 @@ void engine_power_on_reset(struct lane *lane, const struct device *d, const stru
 		struct signal *s = d->signals[k];
 
 		/* after a restart before owsd's first look it got its command, and no InitValue */
-		if (!seen && s->command.confirmed && s->item->output)
+		if (!seen && s->command.confirmed && signal_repeats(s))
 			s->command.forced = true;
 		else
 			signal_forget_written(s);

@@ -248,7 +248,7 @@ static void resume_signal(struct engine *e, struct signal *s, const struct force
 			awaited[was.controller] = in_force_await(e, left, was.controller) + 1;
 		controller = awaited[was.controller] - 1;
 	}
-	if (found && was.safe && s->item->has_safe) {
+	if (found && was.safe && s->item->has_safe && signal_repeats(s)) {
 		put_safe(e, s, &owsd_itself);
 	} else if (controller != CONTROLLER_NOBODY) {
 		in_force_put_value(s, was.value, text, was.len);
@@ -360,7 +360,7 @@ void engine_come_back(struct engine *e, uint32_t to)
 		engine_origin(e, s, OWS_REASON_RETURNED, &g->as.who, &before);
 		if (s->command.awaited)
 			store_last(e, s);
-		s->command.awaited = false;
+		s->command.awaited &= !signal_repeats(s); /* else until the next set */
 		remember_command(e, s);
 		engine_settle(e, s);
 		engine_write_check(e, s);
