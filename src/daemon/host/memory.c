@@ -246,7 +246,7 @@ int memory_make(struct memory *m, const struct memory_setup *setup, char *why, s
 	if (!err)
 		err = make_layout(m);
 	if (!err && has_before)
-		shelves_carry(&m->image, before.base, before.size);
+		shelves_carry(&m->image, before.base, before.size, NULL);
 	if (has_before)
 		segment_close(&before);
 	if (err) {

@@ -19,10 +19,10 @@ struct control *host_control(const struct host *host);
  */
 void host_refused(struct host *host, int err, const char *why);
 /*
- * Serve another configuration without a gap: signals of the same name, path and type go on with
- * value, quality, alarms and retries, targets with the same options stay open. Blocks until the
- * reload is done. Returns 0 (the host owns config), or a negative errno with the reason in why:
- * then nothing changes. -ERESTART: a restart would take it. Only when host_may_reload().
+ * Serve another configuration without a gap: signals that stay (adoption.h) go on with value,
+ * quality, alarms and retries, targets with the same options stay open. Blocks until the reload is
+ * done. Returns 0 (the host owns config), or a negative errno with the reason in why: then nothing
+ * changes. -ERESTART: a restart would take it. Only when host_may_reload().
  */
 int host_reload(struct host *host, struct config *config, char *why, size_t why_size);
 

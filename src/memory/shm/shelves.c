@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Finds the shelved alarms of an earlier image, and enters them in the present one by name. */
+/* Finds the shelved alarms of an earlier image, and enters them in the present one. */
 #include <string.h>
 
 #include "src/memory/shm/entries.h"
@@ -81,7 +81,7 @@ static uint32_t record_of(const struct image *image, const char *name)
 	return 0;
 }
 
-void shelves_carry(struct image *image, const void *before, size_t size)
+void shelves_carry(struct image *image, const void *before, size_t size, const uint32_t *records)
 {
 	struct earlier from = {.base = before, .size = size};
 	uint32_t entered = 0;
@@ -96,7 +96,10 @@ void shelves_carry(struct image *image, const void *before, size_t size)
 		if (!reader_entry((const void *)at, &entry, sizeof(entry)) || !entry.record)
 			continue;
 		name = earlier_name(&from, entry.record);
-		entry.record = name ? record_of(image, name) : 0;
+		if (name && records && records[entry.record - 1] != UINT32_MAX)
+			entry.record = records[entry.record - 1] + 1;
+		else
+			entry.record = name ? record_of(image, name) : 0;
 		if (entry.record)
 			image_shelf(image, entered++, &entry);
 	}

@@ -7,7 +7,8 @@
 #include "src/memory/shm/image.h"
 
 /*
- * Enter what is shelved in the image before, of size bytes, for the records of the same names; a
- * name that is gone is left out. The image before may be of another owsd, and cut off anywhere.
+ * Enter what is shelved in the image before, of size bytes. records: as of image_carry_journals();
+ * what has none there, or all if it is NULL, goes to the record of the same name, and is left out
+ * if there is none. The image before may be of another owsd, and cut off anywhere.
  */
-void shelves_carry(struct image *image, const void *before, size_t size);
+void shelves_carry(struct image *image, const void *before, size_t size, const uint32_t *records);

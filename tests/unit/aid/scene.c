@@ -17,7 +17,8 @@ static struct config_item *add_item(struct scene *s, const char *name, const cha
 	struct config_item *item = &s->items[s->config.item_count++];
 
 	TEST_ASSERT_LESS_OR_EQUAL(SCENE_ITEMS, s->config.item_count);
-	*item = (struct config_item){.name = name, .path = path, .type = type, .per_factor = 1};
+	*item = (struct config_item){
+		.name = name, .path = path, .identity = path, .type = type, .per_factor = 1};
 	item->line = (int)s->config.item_count;
 	item->init_text = item->safe_text = "";
 	return item;
@@ -180,7 +181,7 @@ static struct engine *make_engine(struct scene *s, const struct config *config,
 	make_memory(s, config, image);
 	setup.force = s->force;
 	if (left)
-		shelves_carry(image, before.base, before.header->size);
+		shelves_carry(image, before.base, before.header->size, NULL);
 	for (unsigned i = 0; i < config->target_count; i++) {
 		struct scene_bus *bus = bus_named(s, config->targets[i].text);
 

@@ -35,6 +35,7 @@ static void add(struct config *config, const char *name, const char *path)
 {
 	config->items[config->item_count++] = (struct config_item){.name = name,
 	                                                           .path = path,
+	                                                           .identity = path,
 	                                                           .type = OWS_DOUBLE,
 	                                                           .per_factor = 1,
 	                                                           .readable = true,
@@ -272,6 +273,62 @@ static void test_a_command_for_another_path_is_not_carried(void)
 	TEST_ASSERT_EQUAL_HEX8(OWS_Q_INITIAL, scene_sample(&s, 2).quality);
 }
 
+/* --- Another name ----------------------------------------------------------------------------- */
+
+static void new_name(struct config *config)
+{
+	config->items[1].name = "circulation";
+}
+
+static void each_others_names(struct config *config)
+{
+	config->items[0].name = "valve";
+	config->items[1].name = "pump";
+}
+
+/* Who renames an output in Home Assistant does not want to switch it. */
+static void test_an_output_that_was_renamed_keeps_its_command(void)
+{
+	scene_put(&s, "/29.066418000000/PIO.0", "0", 0);
+	scene_input(&s, "room", "/28.551DDF030000/temperature", OWS_DOUBLE);
+	scene_output(&s, "pump", "/29.066418000000/PIO.0", OWS_BOOL)->has_init = true;
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, 2, 1);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("1", scene_at(&s, "/29.066418000000/PIO.0"));
+	scene_clear_trace(&s);
+	scene_reload(&s, new_name);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_INT64(1, scene_sample(&s, 2).value);
+	scene_expect(&s, 2, OWS_Q_GOOD, 0);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SET, scene_origin(&s, 2).reason);
+	TEST_ASSERT_EQUAL_STRING("controller0", scene_origin(&s, 2).who.name);
+	/* and it is the one that a restart of the device asks for */
+	scene_tell(&s, 0, BUS_POR, "/29.066418000000");
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("1", scene_at(&s, "/29.066418000000/PIO.0"));
+}
+
+static void test_outputs_that_swap_their_names_keep_their_commands(void)
+{
+	scene_put(&s, "/29.066418000000/PIO.0", "0", 0);
+	scene_put(&s, "/29.066418000000/PIO.1", "0", 0);
+	scene_output(&s, "pump", "/29.066418000000/PIO.0", OWS_BOOL);
+	scene_output(&s, "valve", "/29.066418000000/PIO.1", OWS_BOOL);
+	scene_start(&s);
+	scene_up(&s);
+	scene_set(&s, 2, 1);
+	scene_run(&s, SCENE_S);
+	scene_clear_trace(&s);
+	scene_reload(&s, each_others_names);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_EQUAL_INT64(1, scene_sample(&s, 2).value);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_SET, scene_origin(&s, 2).reason);
+}
+
 static void test_a_bad_signal_keeps_its_back_off(void)
 {
 	scene_put(&s, "/28.551DDF030000/temperature", "", -EIO);
@@ -506,6 +563,8 @@ int main(void)
 	RUN_TEST(test_a_write_in_flight_ends_with_the_present_value);
 	RUN_TEST(test_an_output_that_is_gone_is_left_as_it_is);
 	RUN_TEST(test_a_command_for_another_path_is_not_carried);
+	RUN_TEST(test_an_output_that_was_renamed_keeps_its_command);
+	RUN_TEST(test_outputs_that_swap_their_names_keep_their_commands);
 	RUN_TEST(test_a_bad_signal_keeps_its_back_off);
 	RUN_TEST(test_the_count_of_periods_goes_on_when_their_length_changes);
 	RUN_TEST(test_the_count_of_periods_goes_on_after_years);

@@ -68,6 +68,7 @@ static void without_door(struct config *config)
 {
 	*config->items = (struct config_item){.name = "room",
 	                                      .path = "/28.551DDF030000/temperature",
+	                                      .identity = "/28.551DDF030000/temperature",
 	                                      .type = OWS_DOUBLE,
 	                                      .per_factor = 1,
 	                                      .readable = true,

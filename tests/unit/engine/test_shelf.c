@@ -305,6 +305,12 @@ static void rename_signal(struct config *config)
 	config->items[0].name = "cellar";
 }
 
+static void replace_signal(struct config *config)
+{
+	rename_path(config);
+	rename_signal(config);
+}
+
 static void turn_round(struct config *config)
 {
 	struct config_item first = config->items[0];
@@ -350,11 +356,20 @@ static void test_a_signal_of_another_path_stays_shelved_over_a_reload(void)
 	expect(OWS_LIMIT_NORMAL, 0, true);
 }
 
-static void test_a_signal_that_is_gone_gives_its_place_back(void)
+static void test_a_signal_that_was_renamed_stays_shelved_over_a_reload(void)
 {
 	start();
 	shelve(HOUR);
 	scene_reload(&s, rename_signal);
+	TEST_ASSERT_EQUAL(1, shelves());
+	expect(OWS_LIMIT_NORMAL, 0, true);
+}
+
+static void test_a_signal_that_is_gone_gives_its_place_back(void)
+{
+	start();
+	shelve(HOUR);
+	scene_reload(&s, replace_signal);
 	TEST_ASSERT_EQUAL(0, shelves());
 	expect(OWS_LIMIT_NORMAL, 0, false);
 }
@@ -425,6 +440,7 @@ int main(void)
 	RUN_TEST(test_a_reload_keeps_what_is_shelved);
 	RUN_TEST(test_a_reload_finds_what_is_shelved_by_its_name);
 	RUN_TEST(test_a_signal_of_another_path_stays_shelved_over_a_reload);
+	RUN_TEST(test_a_signal_that_was_renamed_stays_shelved_over_a_reload);
 	RUN_TEST(test_a_signal_that_is_gone_gives_its_place_back);
 	RUN_TEST(test_a_signal_without_limits_any_more_gives_its_place_back);
 	RUN_TEST(test_a_restart_keeps_what_is_shelved);

@@ -114,6 +114,25 @@ static void test_a_reload_goes_on_waiting_for_the_disk(void)
 	TEST_ASSERT_EQUAL_UINT32(1, scene_applied(&s, 1));
 }
 
+static void new_name(struct config *config)
+{
+	config->items[0].name = "renamed";
+}
+
+static void test_the_command_of_a_renamed_output_is_stored_by_its_new_name(void)
+{
+	start();
+	scene_set(&s, 1, 7);
+	scene_run(&s, SCENE_S);
+	s.disk.rows[0].known = false; /* nothing is stored by that name */
+	scene_clear_trace(&s);
+	scene_reload(&s, new_name);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(0, s.writes);
+	TEST_ASSERT_TRUE(s.disk.rows[0].known);
+	TEST_ASSERT_EQUAL_INT64(7, s.disk.rows[0].value);
+}
+
 static void test_a_text_begins_as_it_was_last(void)
 {
 	start();
@@ -181,6 +200,7 @@ int main(void)
 	RUN_TEST(test_only_the_newest_of_several_commands_is_waited_for);
 	RUN_TEST(test_a_full_disk_is_seen_and_a_command_on_it_is_not_applied);
 	RUN_TEST(test_a_reload_goes_on_waiting_for_the_disk);
+	RUN_TEST(test_the_command_of_a_renamed_output_is_stored_by_its_new_name);
 	RUN_TEST(test_a_text_begins_as_it_was_last);
 	RUN_TEST(test_what_was_stored_last_is_written_once_after_a_start);
 	RUN_TEST(test_what_the_owsd_before_could_not_store_is_stored_by_the_next);

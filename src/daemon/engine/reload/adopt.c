@@ -390,7 +390,7 @@ void engine_adopt(struct engine *e, struct engine *old, const struct adoption *p
 	take_devices(e, old, plan);
 	image_carry_journals(e->image, old->image, plan->successors);
 	take_signals(e, old, plan);
-	shelves_carry(e->image, old->image->base, old->image->header->size);
+	shelves_carry(e->image, old->image->base, old->image->header->size, plan->successors);
 	engine_shelves_resume(e);
 	take_alarms(e, old, plan);
 	for (unsigned i = 0; i < e->lane_count; i++)

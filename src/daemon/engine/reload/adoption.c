@@ -9,21 +9,55 @@
 #include "src/config/check/targets.h"
 #include "src/daemon/engine/reload/adoption.h"
 
-static int compare_items(const struct config_item *a, const struct config_item *b)
+/* Is it the same property, read as the same type? */
+static int compare_places(const struct config_item *a, const struct config_item *b)
 {
-	int order = strcmp(a->name, b->name);
+	int order = strcmp(a->path, b->path);
 
-	if (!order)
-		order = strcmp(a->path, b->path);
 	return order ? order : (a->type > b->type) - (a->type < b->type);
 }
 
-static int compare_places(const void *a, const void *b)
+static int compare_names(const void *a, const void *b)
 {
-	return compare_items(*(const struct config_item *const *)a,
-	                     *(const struct config_item *const *)b);
+	const struct config_item *x = *(const struct config_item *const *)a;
+	const struct config_item *y = *(const struct config_item *const *)b;
+	int order = strcmp(x->name, y->name);
+
+	return order ? order : compare_places(x, y);
 }
 
+static int compare_identities(const void *a, const void *b)
+{
+	const struct config_item *x = *(const struct config_item *const *)a;
+	const struct config_item *y = *(const struct config_item *const *)b;
+	int order = strcmp(x->identity, y->identity);
+
+	return order ? order : compare_places(x, y);
+}
+
+/* Rows without a predecessor get the one that compares equal, if nobody has it. */
+static void find_rows(struct adoption *plan, const struct config *config,
+                      const struct config *before, const struct config_item **sorted,
+                      int (*compare)(const void *, const void *))
+{
+	qsort(sorted, before->item_count, sizeof(*sorted), compare);
+	for (unsigned i = 0; i < config->item_count; i++) {
+		const struct config_item *item = &config->items[i], **found;
+		uint32_t row;
+
+		if (plan->rows[i] != ADOPT_NEW)
+			continue;
+		found = bsearch(&item, sorted, before->item_count, sizeof(*sorted), compare);
+		row = found ? (uint32_t)(*found - before->items) : ADOPT_NEW;
+		if (!found || plan->successors[row] != ADOPT_NEW)
+			continue;
+		plan->rows[i] = row;
+		plan->successors[row] = i;
+		plan->kept_rows++;
+	}
+}
+
+/* By the name first: who gives an item another Identity leaves its signal as it is. */
 static int plan_rows(struct adoption *plan, const struct config *config,
                      const struct config *before)
 {
@@ -35,23 +69,14 @@ static int plan_rows(struct adoption *plan, const struct config *config,
 		free(sorted);
 		return -ENOMEM;
 	}
-	for (unsigned i = 0; i < before->item_count; i++)
+	for (unsigned i = 0; i < before->item_count; i++) {
 		sorted[i] = &before->items[i];
-	for (unsigned i = 0; i < before->item_count; i++)
 		plan->successors[i] = ADOPT_NEW;
-	qsort(sorted, before->item_count, sizeof(*sorted), compare_places);
-	for (unsigned i = 0; i < config->item_count; i++) {
-		const struct config_item *item = &config->items[i];
-		const struct config_item **found = bsearch(&item, sorted, before->item_count,
-		                                           sizeof(*sorted), compare_places);
-
-		plan->rows[i] = ADOPT_NEW;
-		if (!found)
-			continue;
-		plan->rows[i] = (uint32_t)(*found - before->items);
-		plan->successors[plan->rows[i]] = i;
-		plan->kept_rows++;
 	}
+	for (unsigned i = 0; i < config->item_count; i++)
+		plan->rows[i] = ADOPT_NEW;
+	find_rows(plan, config, before, sorted, compare_names);
+	find_rows(plan, config, before, sorted, compare_identities);
 	free(sorted);
 	return 0;
 }

@@ -12,7 +12,10 @@
 #define ADOPT_NEW UINT32_MAX
 
 struct adoption {
-	/* of each new row: the old one of the same name, path and type; ADOPT_NEW: there is none */
+	/*
+	 * of each new row: the old one of the same path and type, and of the same name or, if it
+	 * was renamed, of the same identity; ADOPT_NEW: there is none
+	 */
 	uint32_t *rows;
 	uint32_t *successors; /* the other way round: of each old row the new one, or ADOPT_NEW */
 	/* of each new target: the old one that goes on as it is; -1: it has to be opened anew */
