@@ -438,6 +438,35 @@ static void test_a_device_that_tells_of_its_restart_gets_its_command_again(void)
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter_of(&s, 0, "power_on_resets"));
 }
 
+/* Who saves a configuration works at the board. */
+static void test_a_reload_keeps_what_is_known_of_the_flag(void)
+{
+	a_board("0");
+	scene_reload(&s, NULL);
+	it_restarts();
+	TEST_ASSERT_EQUAL_STRING("255", scene_at(&s, PIO));
+	shows(OWS_Q_GOOD, 255);
+	TEST_ASSERT_EQUAL_UINT(1, restarts());
+}
+
+static void another_target(struct config *config)
+{
+	config->targets[0].text = "other";
+}
+
+static void test_of_another_target_the_flag_is_not_known(void)
+{
+	a_board("0");
+	scene_bus(&s, "other", 0);
+	s.config.target_count = 1;
+	scene_reload(&s, another_target);
+	scene_put(&s, POR, "1", 0);
+	scene_up_on(&s, 1);
+	scene_run(&s, 25 * SCENE_S);
+	it_restarts();
+	TEST_ASSERT_EQUAL_UINT(0, restarts());
+}
+
 static void test_a_flag_that_nobody_cleared_tells_nothing(void)
 {
 	a_board("1");
@@ -524,6 +553,8 @@ int main(void)
 	RUN_TEST(test_a_reload_carries_the_difference_over);
 	RUN_TEST(test_a_difference_that_is_compared_no_longer_ends_in_the_journal);
 	RUN_TEST(test_a_device_that_tells_of_its_restart_gets_its_command_again);
+	RUN_TEST(test_a_reload_keeps_what_is_known_of_the_flag);
+	RUN_TEST(test_of_another_target_the_flag_is_not_known);
 	RUN_TEST(test_a_flag_that_nobody_cleared_tells_nothing);
 	RUN_TEST(test_what_somebody_else_switched_is_no_restart);
 	RUN_TEST(test_a_flag_that_cannot_be_read_tells_nothing);

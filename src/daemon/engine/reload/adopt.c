@@ -196,8 +196,11 @@ static void take_device(struct engine *e, uint32_t index, const struct engine *o
 	if (e->known)
 		adopt_presences(e, index, old, before, plan);
 	lane = plan->port_successors[old->groups[was->group].first];
-	if (lane >= 0)
-		d->group = e->lanes[lane].port->group;
+	if (lane < 0)
+		return;
+	d->group = e->lanes[lane].port->group;
+	d->por = was->por;
+	d->por_ns = was->por_ns;
 }
 
 static void take_devices(struct engine *e, const struct engine *old, const struct adoption *plan)
