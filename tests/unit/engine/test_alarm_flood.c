@@ -80,15 +80,23 @@ static void por_cannot_be_cleared(void)
 	scene_refuse_writes(&s, D "/por", -EIO);
 }
 
-static void begin(void)
+static void begin_with(const char *reset_latch)
 {
-	figure_3_3(&s);
+	struct config_item *item = figure_3_3(&s);
+
+	if (reset_latch)
+		item->reset_latch = reset_latch;
 	alarm_device(&s, "0", "0");
 	alarm_begin(&s);
 	s.on_read = on_read;
 	s.no_trace = true;
 	scene_put(&s, D "/latch.BYTE", "8", 0);
 	judge_alarm(&s);
+}
+
+static void begin(void)
+{
+	begin_with(NULL);
 }
 
 static void test_whatever_fails_for_an_hour_the_journal_does_not_grow(void)
@@ -163,6 +171,37 @@ static void test_another_channel_is_entered_beside_one_whose_latch_is_always_set
 	TEST_ASSERT_EQUAL_UINT(2, journal());
 }
 
+/* The second door opens while the latch of the first is still set. */
+static void another_channel_joins(void)
+{
+	unsigned head;
+
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_attrs(&s, 1).alarms);
+	head = journal();
+	scene_put(&s, D "/latch.BYTE", "12", 0);
+	scene_run(&s, 70 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_attrs(&s, 1).alarms);
+	TEST_ASSERT_EQUAL_UINT(head + 1, journal());
+	TEST_ASSERT_EQUAL_STRING("12", s.image.alarms[head].text);
+	scene_put(&s, D "/latch.BYTE", "4", 0);
+	scene_run(&s, 70 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(2, scene_attrs(&s, 1).alarms);
+}
+
+static void test_another_channel_is_entered_beside_one_that_nothing_resets(void)
+{
+	begin_with("");
+	another_channel_joins();
+}
+
+static void test_another_channel_is_entered_though_the_reset_is_refused(void)
+{
+	begin();
+	reset_is_refused();
+	another_channel_joins();
+}
+
 static void test_a_latch_of_any_form_is_entered(void)
 {
 	static const char *const forms[] = {
@@ -193,5 +232,7 @@ int main(void)
 	RUN_TEST(test_occurrences_without_a_rest_between_are_counted_and_entered_once);
 	RUN_TEST(test_a_latch_of_any_form_is_entered);
 	RUN_TEST(test_another_channel_is_entered_beside_one_whose_latch_is_always_set);
+	RUN_TEST(test_another_channel_is_entered_beside_one_that_nothing_resets);
+	RUN_TEST(test_another_channel_is_entered_though_the_reset_is_refused);
 	return UNITY_END();
 }

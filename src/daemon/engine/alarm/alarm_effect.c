@@ -46,7 +46,7 @@ void engine_alarm_raised(struct engine *e, struct lane *lane, struct alarm_item 
 	uint32_t channels = alarm_channels(item->occurrence.latch_text);
 	struct ows_journal_entry entry;
 
-	if (item->occurrence.stands)
+	if (item->occurrence.stands && !(channels & ~item->occurrence.entered))
 		return;
 	item->occurrence.stands = true;
 	s->attrs.alarms++;
