@@ -126,6 +126,7 @@ static bool ask_alarm(struct lane *lane, struct slot *slot)
 		return false;
 	slot->purpose = FOR_ALARM;
 	slot->stamp = 0;
+	slot->one_shot = false;
 	slot->req = (struct bus_req){
 		.prio = BUS_ALARM, .fresh = true, .path = slot->path, .len = sizeof(slot->data)};
 	if (!alarm_run(&lane->alarm, lane, slot) || !slot_lend(lane, slot))

@@ -4,6 +4,7 @@
  * the cache, "W" writes; expected texts are complete, so a reader can follow them beside the
  * manual.
  */
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -97,6 +98,34 @@ static void test_after_a_power_on_reset_everything_is_set_up_again(void)
 	                         s.trace);
 	TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, D "/PIO.BYTE"));
 	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "power_on_resets"));
+}
+
+/* The slot of a _ReadOneShot is used for InitValue next. */
+static void test_an_init_value_that_fails_is_no_one_shot(void)
+{
+	struct config_item *out;
+
+	figure_3_3(&s);
+	out = scene_output(&s, "relays", D "/PIO.BYTE", OWS_BYTE);
+	out->has_init = true;
+	out->init_value = 3;
+	alarm_device(&s, "0", "0");
+	alarm_begin(&s);
+	scene_set(&s, 2, 7);
+	scene_run(&s, 200 * SCENE_MS);
+	scene_refuse_writes(&s, D "/PIO.BYTE", -EIO);
+	scene_clear_trace(&s);
+	scene_slot(&s, 1)->dgn_reset += OWS_STEP_READ;
+	scene_ring(&s, 1);
+	scene_put(&s, D "/por", "1", 0);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_NOT_NULL(strstr(s.trace, "W " D "/PIO.BYTE=3\n"));
+	scene_enable_writes(&s, 2, false);
+	scene_run(&s, SCENE_S);
+	scene_refuse_writes(&s, D "/PIO.BYTE", 0);
+	scene_clear_trace(&s);
+	scene_run(&s, 70 * SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W " D "/PIO.BYTE"));
 }
 
 static void test_all_outputs_below_the_device_get_their_init_value_in_order(void)
@@ -395,6 +424,7 @@ int main(void)
 	RUN_TEST(test_an_alarm_stands_in_the_journal_with_the_values_before_and_after);
 	RUN_TEST(test_a_power_on_reset_stands_in_the_journal);
 	RUN_TEST(test_after_a_power_on_reset_everything_is_set_up_again);
+	RUN_TEST(test_an_init_value_that_fails_is_no_one_shot);
 	RUN_TEST(test_all_outputs_below_the_device_get_their_init_value_in_order);
 	RUN_TEST(test_a_long_text_is_written_whole_after_a_power_on_reset);
 	RUN_TEST(test_the_alarm_condition_is_armed_at_start_if_it_differs);
