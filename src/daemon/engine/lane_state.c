@@ -67,6 +67,18 @@ static void refresh_signals(struct lane *lane)
 		           unknown > 1 ? ", ..." : "", unknown > 1 ? "are" : "is");
 }
 
+static void keep_note(struct lane *lane, struct lane_note *note, const char *text)
+{
+	size_t len = printable_cut(text, sizeof(note->text) - 1);
+
+	memcpy(note->text, text, len);
+	note->text[printable(note->text, len)] = '\0';
+	note->since_ns = lane->engine->time.now_ns;
+	engine_publish_target(lane->engine, lane);
+}
+
+static const char no_answer[] = "no answer at all within Timeout";
+
 void lane_up(struct lane *lane, const char *text)
 {
 	struct engine *e = lane->engine;
@@ -84,8 +96,7 @@ void lane_up(struct lane *lane, const char *text)
 	}
 	log_notice(e->log, "%s: from down to up%s%s", lane->port->target, *text ? ": " : "", text);
 	lane->state.was_up = true;
-	lane->state.why_down.text[0] = '\0';
-	engine_publish_target(e, lane);
+	keep_note(lane, &lane->state.why_down, lane->state.stuck ? no_answer : "");
 	engine_publish_driver(e);
 	refresh_signals(lane);
 	group_asks(lane);
@@ -129,8 +140,9 @@ void lane_stuck(struct lane *lane)
 	lane->state.stuck = true;
 	if (!lane->state.open)
 		return;
-	log_err(lane->engine->log, "%s: no answer at all within Timeout", lane->port->target);
+	log_err(lane->engine->log, "%s: %s", lane->port->target, no_answer);
 	lane->counters.target_failures++;
+	keep_note(lane, &lane->state.why_down, no_answer);
 	lane_fail(lane, -ETIMEDOUT);
 }
 
@@ -146,6 +158,7 @@ void lane_unstuck(struct lane *lane)
 	way->failed = false;
 	way->up = true;
 	way->up_ns = e->time.now_ns;
+	keep_note(lane, &lane->state.why_down, "");
 	refresh_signals(lane);
 	group_asks(lane);
 }
@@ -175,16 +188,6 @@ static void report_cached(const struct lane *lane, int64_t cache_ns)
 		           "timeout_volatile in owfs.conf shortens the cache",
 		           lane->port->target, (long long)(cache_ns / NS_PER_S), count,
 		           first->item->name, count > 1 ? ", ..." : "");
-}
-
-static void keep_note(struct lane *lane, struct lane_note *note, const char *text)
-{
-	size_t len = printable_cut(text, sizeof(note->text) - 1);
-
-	memcpy(note->text, text, len);
-	note->text[printable(note->text, len)] = '\0';
-	note->since_ns = lane->engine->time.now_ns;
-	engine_publish_target(lane->engine, lane);
 }
 
 static void trouble_event(struct lane *lane, const char *text)

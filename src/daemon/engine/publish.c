@@ -133,9 +133,9 @@ void engine_publish_driver(struct engine *e)
 
 void engine_publish_target(struct engine *e, const struct lane *lane)
 {
-	uint32_t state = lane->state.up ? 1 : engine_way(e, lane)->released ? 2 : 0;
-	const struct lane_note *note = lane->state.up ? &lane->state.trouble
-	                                              : &lane->state.why_down;
+	bool up = lane->state.up && !lane->state.stuck; /* what hangs cannot report that */
+	uint32_t state = up ? 1 : engine_way(e, lane)->released ? 2 : 0;
+	const struct lane_note *note = up ? &lane->state.trouble : &lane->state.why_down;
 
 	image_target(e->image, lane->index, state, (uint32_t)lane->counters.reconnects);
 	image_moves(e->image, lane->index, (uint32_t)lane->counters.moves_in);

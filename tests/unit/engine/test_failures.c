@@ -533,6 +533,36 @@ static void test_a_target_has_the_reason_while_it_is_down_and_its_trouble_while_
 	TEST_ASSERT_EQUAL_STRING("", note());
 }
 
+/* What hangs reports nothing by itself. */
+static void test_a_target_that_hangs_is_shown_as_down_until_it_answers(void)
+{
+	struct bus_event event = {.news = BUS_UP};
+
+	two_thermometers();
+	trouble("a fault of its own");
+	s.bus[0].mute = true;
+	scene_run(&s, 21 * SCENE_S);
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_TARGET, scene_sample(&s, 1).quality);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_target_state(&s, 0));
+	TEST_ASSERT_EQUAL_STRING("no answer at all within Timeout", note());
+	/* its server may be gone, and there again */
+	scene_down(&s, -ECONNRESET);
+	scene_run(&s, SCENE_S);
+	engine_event(s.engine, 0, &event, s.now_ns);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_target_state(&s, 0));
+	TEST_ASSERT_EQUAL_STRING("no answer at all within Timeout", note());
+	scene_reload(&s, NULL);
+	TEST_ASSERT_EQUAL_UINT32(0, scene_target_state(&s, 0));
+	s.bus[0].mute = false;
+	scene_answer(&s, s.bus[0].swallowed[0]->id, -EIO, NULL, s.bus[0].swallowed[0]);
+	s.bus[0].swallowed_count = 0;
+	scene_run(&s, SCENE_S);
+	scene_expect(&s, 1, OWS_Q_GOOD, 0);
+	TEST_ASSERT_EQUAL_UINT32(1, scene_target_state(&s, 0));
+	TEST_ASSERT_EQUAL_STRING("a fault of its own", note());
+}
+
 static void test_a_timeout_shorter_than_the_period_is_kept(void)
 {
 	s.config.period_ns = 60 * SCENE_S;
@@ -639,6 +669,7 @@ int main(void)
 	RUN_TEST(test_one_request_without_answer_spoils_only_its_signal_on_a_bus_that_lives);
 	RUN_TEST(test_a_bus_that_only_talks_and_keeps_all_it_was_given_is_stuck_too);
 	RUN_TEST(test_a_target_has_the_reason_while_it_is_down_and_its_trouble_while_it_is_up);
+	RUN_TEST(test_a_target_that_hangs_is_shown_as_down_until_it_answers);
 	RUN_TEST(test_a_timeout_shorter_than_the_period_is_kept);
 	RUN_TEST(test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_value);
 	RUN_TEST(test_answers_that_nobody_asked_for_are_counted_and_ignored);
