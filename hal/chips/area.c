@@ -318,7 +318,7 @@ static int check_unit(struct txn *txn, const struct area *area, struct unit unit
 	bool written = area->is_written ? area->is_written(txn, in, visit->want, unit.n)
 	                                : memcmp(in, visit->want, unit.n) == 0;
 	if (written && !area->verify)
-		txn_changed(txn);
+		txn_changed(txn, area, unit.at);
 	return written ? 0 : -EIO;
 }
 
@@ -376,9 +376,11 @@ static int prepare_unit(struct txn *txn, const struct area *area, struct unit un
 {
 	struct area_visit *visit = &txn->area;
 	unsigned from = at > unit.at ? at : unit.at, to = smaller(at + n, unit.at + unit.n);
+	uint8_t begun[AREA_UNIT];
 	int err;
 
 	if (is_given(area, unit, at, mask, n)) {
+		txn_changed(txn, area, unit.at);
 		memcpy(visit->want, bytes, unit.n);
 		visit->have[0] = (uint8_t)~bytes[0];
 		visit->step = WRITE;
@@ -388,8 +390,10 @@ static int prepare_unit(struct txn *txn, const struct area *area, struct unit un
 	txn->silent = false;
 	if (err)
 		return err;
-	memcpy(visit->want, visit->have, unit.n);
-	bool again = !area->verify && !txn->restarted && txn_base(txn, area, visit->want, unit.n);
+	memcpy(begun, visit->have, unit.n);
+	bool again = !area->verify && !txn->restarted &&
+	             txn_base(txn, area, unit.at, begun, unit.n);
+	memcpy(visit->want, begun, unit.n);
 	for (unsigned i = from; i < to; i++) {
 		uint8_t bits = mask ? mask[i - at] : 0xff, *byte = &visit->want[i - unit.at];
 
@@ -403,9 +407,9 @@ static int prepare_unit(struct txn *txn, const struct area *area, struct unit un
 	if (unit.at < area->fixed)
 		return equal ? 0 : -EIO;
 	if (equal && again)
-		txn_changed(txn);
+		txn_changed(txn, area, unit.at);
 	if (!equal && !area->verify)
-		txn_keep(txn, area, visit->have, unit.n);
+		txn_keep(txn, area, unit.at, begun, visit->want, unit.n);
 	if (anew)
 		visit->have[0] = (uint8_t)~visit->want[0];
 	visit->step = WRITE;

@@ -58,8 +58,12 @@ struct device {
 	uint8_t shadow;
 	bool shadow_known;
 
-	/* What stood in registers before a change that has not succeeded yet (txn_keep). */
-	uint8_t base[32];
+	/*
+	 * What stood in registers before a change that has not succeeded yet (txn_keep), and which
+	 * bits of that it was to change.
+	 */
+	uint8_t base[32], asked[32];
+	uint16_t base_at;
 	const void *base_of; /* which registers; NULL: none */
 
 	struct device_reading readings[DEVICE_READINGS];

@@ -395,26 +395,40 @@ int txn_verify(struct txn *txn, bool alarm)
 	return there;
 }
 
-bool txn_base(const struct txn *txn, const void *which, uint8_t *bytes, size_t n)
+static bool has_base(const struct device *device, const void *which, unsigned at)
 {
-	if (txn->device->base_of != which)
+	return device->base_of == which && device->base_at == at;
+}
+
+bool txn_base(const struct txn *txn, const void *which, unsigned at, uint8_t *bytes, size_t n)
+{
+	const struct device *device = txn->device;
+
+	if (!has_base(device, which, at))
 		return false;
-	memcpy(bytes, txn->device->base, n);
+	for (size_t i = 0; i < n; i++)
+		bytes[i] = (uint8_t)((bytes[i] & device->asked[i]) |
+		                     (device->base[i] & ~device->asked[i]));
 	return true;
 }
 
-void txn_keep(struct txn *txn, const void *which, const uint8_t *bytes, size_t n)
+void txn_keep(struct txn *txn, const void *which, unsigned at, const uint8_t *bytes,
+              const uint8_t *want, size_t n)
 {
-	assert(n <= sizeof(txn->device->base));
-	if (txn->device->base_of == which)
-		return;
-	txn->device->base_of = which;
-	memcpy(txn->device->base, bytes, n);
+	struct device *device = txn->device;
+
+	assert(n <= sizeof(device->base));
+	device->base_of = which;
+	device->base_at = (uint16_t)at;
+	memcpy(device->base, bytes, n);
+	for (size_t i = 0; i < n; i++)
+		device->asked[i] = bytes[i] ^ want[i];
 }
 
-void txn_changed(struct txn *txn)
+void txn_changed(struct txn *txn, const void *which, unsigned at)
 {
-	txn->device->base_of = NULL;
+	if (has_base(txn->device, which, at))
+		txn->device->base_of = NULL;
 }
 
 /*

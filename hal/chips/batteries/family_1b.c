@@ -191,8 +191,8 @@ static int write_increment(struct txn *txn)
 		return err;
 	if (visit->step == 0) {
 		memcpy(want, now, 2);
-		txn_base(txn, &registers, want, 2);
-		txn_keep(txn, &registers, want, 2);
+		txn_base(txn, &registers, COUNT, want, 2);
+		txn_keep(txn, &registers, COUNT, want, want, 2);
 		want[1] = (uint8_t)(want[1] + (++want[0] == 0));
 		visit->step = 1;
 		if (memcmp(now, want, 2) != 0)
@@ -200,7 +200,7 @@ static int write_increment(struct txn *txn)
 	}
 	if (memcmp(now, want, 2) != 0)
 		return -EIO;
-	txn_changed(txn);
+	txn_changed(txn, &registers, COUNT);
 	return 0;
 }
 
@@ -211,8 +211,10 @@ static int write_reset(struct txn *txn)
 
 	if (txn->number[0] == 0)
 		return 0;
-	if (txn->phase++ == 0)
+	if (txn->phase++ == 0) {
+		txn_changed(txn, &registers, COUNT);
 		return family_1b_command(txn, 0xb8, COPY_NS);
+	}
 	err = read_count(txn, now);
 	return err ? err : now[0] || now[1] ? -EIO : 0;
 }

@@ -120,19 +120,19 @@ static int stored(struct txn *txn)
 {
 	struct thermometer *chip = thermometer_of(txn->device);
 
-	txn_changed(txn);
+	txn_changed(txn, &thermometer_area, SP_HIGH);
 	chip->stored = chip->resolution;
 	chip->recalled = true;
 	return 0;
 }
 
-/* What the EEPROM has, but for the field; after a write that failed what it had before that. */
+/* What the EEPROM has, but for the field; after a write that failed see txn_base(). */
 static int want_settings(struct txn *txn, const uint8_t scratchpad[9])
 {
 	struct visit *visit = visit_of(txn);
 
 	memcpy(visit->scratchpad, scratchpad, sizeof(visit->scratchpad));
-	bool failed = txn_base(txn, &thermometer_area, visit->scratchpad + SP_HIGH, 3);
+	bool failed = txn_base(txn, &thermometer_area, SP_HIGH, visit->scratchpad + SP_HIGH, 3);
 	memcpy(visit->kept, visit->scratchpad + SP_HIGH, 3);
 	visit->proven |= failed;
 	uint8_t *byte = visit->scratchpad + visit->at;
@@ -206,7 +206,8 @@ static int verify(struct txn *txn)
 	if (!has_settings(txn, scratchpad))
 		return scratchpad[SP_CONFIG] != visit->scratchpad[SP_CONFIG] ? -EINVAL : -EBADMSG;
 	if (visit->proven)
-		txn_keep(txn, &thermometer_area, visit->kept, 3);
+		txn_keep(txn, &thermometer_area, SP_HIGH, visit->kept, visit->scratchpad + SP_HIGH,
+		         3);
 	txn->phase = visit->proven ? COPY : PROBE;
 	return TXN_MORE;
 }

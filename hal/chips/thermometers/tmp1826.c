@@ -281,15 +281,13 @@ static int in_range(double raw, int16_t *out)
 	return 0;
 }
 
-/* What the settings are to be; of a write that failed before, from those before it. */
-static int wanted_settings(struct txn *txn, const uint8_t have[SETTINGS], uint8_t want[SETTINGS])
+/* What the settings are to be, from what the write begins with. */
+static int wanted_settings(struct txn *txn, const uint8_t begun[SETTINGS], uint8_t want[SETTINGS])
 {
 	unsigned at = FIRST_HALF + (unsigned)txn->property->arg - TMP1826_LOW;
 	int16_t raw = 0;
 
-	memcpy(want, have, SETTINGS);
-	if (!txn->restarted)
-		txn_base(txn, base, want, SETTINGS);
+	memcpy(want, begun, SETTINGS);
 	int err = in_range(txn->number[0] * (want[0] & PRECISE ? 128 : 16), &raw);
 	want[at] = (uint8_t)raw;
 	want[at + 1] = (uint8_t)((uint16_t)raw >> 8);
@@ -326,14 +324,17 @@ enum { LOOK, VERIFY, CHECK };
 int tmp1826_write_limit(struct txn *txn)
 {
 	struct visit *visit = txn_own(txn, struct visit);
-	uint8_t pad[PAD], have[SETTINGS];
+	uint8_t pad[PAD], have[SETTINGS], begun[SETTINGS];
 	int err = read_pad(txn, pad);
 
 	if (err)
 		return err;
 	settings_of_pad(pad, have);
 	if (txn->phase == LOOK) {
-		err = wanted_settings(txn, have, visit->want);
+		memcpy(begun, have, SETTINGS);
+		if (!txn->restarted)
+			txn_base(txn, base, 0, begun, SETTINGS);
+		err = wanted_settings(txn, begun, visit->want);
 		if (err)
 			return err;
 		bool equal = memcmp(have, visit->want, SETTINGS) == 0;
@@ -342,7 +343,7 @@ int tmp1826_write_limit(struct txn *txn)
 		txn->phase = VERIFY;
 		if (equal)
 			return TXN_MORE;
-		txn_keep(txn, base, have, SETTINGS);
+		txn_keep(txn, base, 0, begun, visit->want, SETTINGS);
 		err = write_settings(txn, visit->want);
 		return err ? err : TXN_MORE;
 	}
@@ -350,7 +351,7 @@ int tmp1826_write_limit(struct txn *txn)
 	if (memcmp(have, visit->want, SETTINGS) != 0)
 		return -EIO;
 	if (txn->phase == VERIFY) {
-		txn_changed(txn);
+		txn_changed(txn, base, 0);
 		txn->phase = CHECK;
 		return txn_command_strong(txn, TXN_BYTES(COPY_SCRATCHPAD_1), PROGRAM_NS);
 	}
