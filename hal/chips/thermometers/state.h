@@ -13,9 +13,10 @@ enum thermometer_make { MAKE_UNKNOWN, MAKE_GENUINE, MAKE_CLONE };
 /* What is known of the chip (device.own). */
 struct thermometer {
 	/* For good. */
-	uint8_t make; /* enum thermometer_make */
-	bool ignores; /* takes no other resolution (clones) */
-	bool only_12; /* has one resolution, and no bits that say so */
+	uint8_t make;    /* enum thermometer_make */
+	bool ignores;    /* takes no other resolution (clones) */
+	bool only_12;    /* has one resolution, and no bits that say so */
+	uint8_t refused; /* so often in a row it kept the one it had */
 	/* Until it restarts. */
 	uint8_t resolution;   /* 9 to 12 as read back; 0: not known */
 	uint8_t stored;       /* what it was before our first change: the EEPROM's; 0: not known */

@@ -23,6 +23,7 @@
 #define NEAR_NS (60 * 1000 * TXN_MS) /* as for an owserver: hal/owserver/judge.h */
 #define LOOKS_ONE 3
 #define LOOKS_ZERO 2
+#define REFUSALS 3 /* as often as a request is tried */
 
 /* What thermometer_prepare() keeps from call to call. */
 struct visit {
@@ -39,6 +40,7 @@ void thermometer_forget(struct device *device)
 
 	*chip = (struct thermometer){.make = chip->make,
 	                             .ignores = chip->ignores,
+	                             .refused = chip->refused,
 	                             .only_12 = chip->only_12,
 	                             .raw = chip->raw,
 	                             .busy_ns = chip->busy_ns,
@@ -232,13 +234,14 @@ bool thermometer_has_bits(const struct device *device, unsigned bits)
 int thermometer_prepare(struct txn *txn, unsigned resolution)
 {
 	struct device *device = txn->device;
+	struct thermometer *chip = thermometer_of(device);
 	uint8_t scratchpad[9];
 	int err;
 
 	switch (txn->phase) {
 	case 0:
 		err = thermometer_settings(txn, visit_of(txn)->scratchpad);
-		if (err || thermometer_of(device)->resolution == resolution)
+		if (err || chip->resolution == resolution)
 			return err;
 		visit_of(txn)->scratchpad[SP_CONFIG] = thermometer_config(
 			visit_of(txn)->scratchpad[SP_CONFIG], resolution);
@@ -252,14 +255,18 @@ int thermometer_prepare(struct txn *txn, unsigned resolution)
 		txn->phase = 2;
 		return err ? err : TXN_MORE;
 	default:
-		thermometer_of(device)->resolution = 0;
+		chip->resolution = 0;
 		err = thermometer_settings(txn, scratchpad);
-		if (err || thermometer_of(device)->resolution == resolution)
+		if (err)
 			return err;
-		/* It took another one before: this write was lost. */
-		if (thermometer_of(device)->resolution != thermometer_of(device)->stored)
+		if (chip->resolution == resolution) {
+			chip->refused = 0;
+			return 0;
+		}
+		/* It took another one before, or may have heard nothing: this write was lost. */
+		if (chip->resolution != chip->stored || ++chip->refused < REFUSALS)
 			return -EBADMSG;
-		thermometer_of(device)->ignores = true;
+		chip->ignores = true;
 		return 0;
 	}
 }

@@ -395,6 +395,36 @@ static void test_ones_that_noise_gave_a_right_checksum_are_no_temperature(void)
 	}
 }
 
+static struct trouble swallowed;
+static unsigned writes_lost;
+
+/* The first Write Scratchpad. */
+static void swallow(const uint8_t *bytes, size_t n)
+{
+	if (n < 10 || bytes[9] != 0x4e || writes_lost)
+		return;
+	swallowed.deaf = true;
+	writes_lost++;
+}
+
+static void test_a_chip_that_did_not_hear_of_a_resolution_is_told_again(void)
+{
+	wire_init(&host, 1, 1);
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+	struct sim_thermometer *sim = slave->state;
+
+	sim->eeprom[2] = sim->scratchpad[4] = 0x1f;
+	wire_set(slave, "temperature", 20.3125);
+	trouble_none(&swallowed);
+	wire_net.trouble = &swallowed;
+	wire_net.sends = swallow;
+	writes_lost = 0;
+	start();
+	expect(true, of(slave, "temperature12"), "     20.3125");
+	TEST_ASSERT_EQUAL_UINT(1, writes_lost);
+	expect(true, of(slave, "temperature12"), "     20.3125");
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -416,5 +446,6 @@ int main(void)
 	RUN_TEST(test_a_chip_that_takes_no_resolution_is_read_all_the_same);
 	RUN_TEST(test_one_device_serves_two_resolutions_at_once);
 	RUN_TEST(test_ones_that_noise_gave_a_right_checksum_are_no_temperature);
+	RUN_TEST(test_a_chip_that_did_not_hear_of_a_resolution_is_told_again);
 	return UNITY_END();
 }
