@@ -157,7 +157,9 @@ void job_keep(struct native *native, struct job *job)
 	const struct property *property = job->property;
 	int64_t measured = txn_measured(&job->txn);
 
-	if (!job->txn.device || property->offline || job->out > CACHE_TEXT_MAX)
+	/* a list whose chip was written between two elements may be partly old */
+	if (!job->txn.device || property->offline || job->out > CACHE_TEXT_MAX ||
+	    job->changes != job->txn.device->changes)
 		return;
 	struct cache_entry *entry = cache_add(&native->cache, job->txn.device, property,
 	                                      job->extension);

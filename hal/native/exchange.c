@@ -62,9 +62,7 @@ static bool next_chunk(struct job *job)
 	if (property->type != PROPERTY_BINARY || !property->field.area ||
 	    property_size(property) <= FIELD_CHUNK)
 		return false;
-	if (job->out == txn->len)
-		job->changes = txn->device->changes;
-	else if (job->changes != txn->device->changes)
+	if (job->changes != txn->device->changes)
 		job->out = 0;
 	return txn->len && job->out < property_size(property);
 }
@@ -76,6 +74,8 @@ static int add_element(struct job *job)
 	const struct property *property = job->property;
 	bool all = job_wants_all(job);
 
+	if (job->out == 0 && job->element == 0 && txn->device)
+		job->changes = txn->device->changes;
 	/* of a float its text is what was meant: 1.2, which as a float is 1.2000000477 */
 	if (job->req->number && !job->req->single && format_is_number(property, job->extension))
 		return 0;

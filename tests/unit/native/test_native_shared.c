@@ -313,6 +313,41 @@ static void test_a_long_memory_that_is_written_meanwhile_is_not_half_old(void)
 	TEST_ASSERT_GREATER_THAN_UINT(3, between);
 }
 
+/* Written at each moment between the elements; what is answered then may be old, but is not kept. */
+static void test_a_list_that_is_written_meanwhile_is_not_kept(void)
+{
+	static const struct {
+		const char *chip, *list, *element, *before, *after;
+		size_t at;
+	} lists[] = {{"DS2438", "pages/page.ALL", "pages/page.3", "aaaaaaaa", "bbbbbbbb", 24},
+	             {"DS2438", "pages/page.ALL", "pages/page.6", "aaaaaaaa", "bbbbbbbb", 48},
+	             {"DS2450", "set_alarm/low.ALL", "set_alarm/low.A", "0", "1", 0},
+	             {"DS2450", "PIO.ALL", "PIO.A", "0", "1", 0}};
+	unsigned between = 0;
+
+	for (size_t i = 0; i < sizeof(lists) / sizeof(lists[0]); i++)
+		for (unsigned moment = 1; moment < 40; moment++) {
+			tearDown();
+			setUp();
+			begin(lists[i].chip);
+			TEST_ASSERT_EQUAL_INT(
+				0, result(BUS_WRITE, of(chip, lists[i].element), lists[i].before));
+			uint32_t id = ask(BUS_READ, BUS_GUEST, false, of(chip, lists[i].list),
+			                  NULL);
+
+			host_run(&host, bus, host.now + moment * 10 * HOST_MS);
+			between += !host_answer(&host, id);
+			TEST_ASSERT_EQUAL_INT(
+				0, result(BUS_WRITE, of(chip, lists[i].element), lists[i].after));
+			TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+			id = ask(BUS_READ, BUS_GUEST, false, of(chip, lists[i].list), NULL);
+			TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+			TEST_ASSERT_EQUAL_CHAR_MESSAGE(lists[i].after[0], data[id][lists[i].at],
+			                               lists[i].list);
+		}
+	TEST_ASSERT_GREATER_THAN_UINT(20, between);
+}
+
 /* What of two requests is out of one row is still found: the tables are searched by halves. */
 static void test_the_properties_of_each_family_are_sorted_by_name(void)
 {
@@ -401,6 +436,7 @@ int main(void)
 	RUN_TEST(test_humidity_leaves_the_temperature_to_those_who_ask_next);
 	RUN_TEST(test_four_volts_asked_for_at_once_are_one_conversion);
 	RUN_TEST(test_a_long_memory_that_is_written_meanwhile_is_not_half_old);
+	RUN_TEST(test_a_list_that_is_written_meanwhile_is_not_kept);
 	RUN_TEST(test_the_properties_of_each_family_are_sorted_by_name);
 	RUN_TEST(test_no_array_has_elements_that_are_read_in_parts);
 	RUN_TEST(test_the_families_are_in_the_order_of_their_codes);
