@@ -26,6 +26,7 @@ static uint8_t supply_of(const struct native *native, const struct device *devic
 
 	switch ((enum device_power)device->power) {
 	case POWER_UNKNOWN:
+	case POWER_ASSUMED:
 		break;
 	case POWER_PARASITE:
 		return BUS_SUPPLY_PARASITE;

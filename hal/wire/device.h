@@ -14,9 +14,15 @@
 
 enum device_power {
 	POWER_UNKNOWN,
+	POWER_ASSUMED, /* it could not be asked, and counts as parasitic */
 	POWER_PARASITE,
 	POWER_EXTERNAL,
 };
+
+static inline bool device_power_known(uint8_t power)
+{
+	return power != POWER_UNKNOWN && power != POWER_ASSUMED;
+}
 
 struct family;
 

@@ -106,7 +106,7 @@ static int copy_settings(struct txn *txn)
 		return err ? err : TXN_MORE;
 	}
 	/* Without a strong pull-up a chip that the wire feeds cannot copy. */
-	if (!txn->link->facts->strong && txn->device->power == POWER_UNKNOWN) {
+	if (!txn->link->facts->strong && !device_power_known(txn->device->power)) {
 		int err = thermometer_ask_power(txn);
 
 		return err < 0 ? err : TXN_MORE;

@@ -95,7 +95,7 @@ void convert_early(struct native *native, struct job *job, int64_t now)
 {
 	const struct device *device = job->txn.device;
 
-	if (!schedule_early(native) || device->power == POWER_UNKNOWN || device->locked ||
+	if (!schedule_early(native) || !device_power_known(device->power) || device->locked ||
 	    !is_right(job) || native_held(native, device->channel, job, now) ||
 	    is_overtaking(native, job))
 		return;
@@ -120,7 +120,7 @@ static int prepare_chip(struct native *native, struct job *job)
 {
 	struct device *device = job->txn.device;
 
-	if (job->txn.phase == 0 && device->power == POWER_UNKNOWN) {
+	if (job->txn.phase == 0 && !device_power_known(device->power)) {
 		/* To a battery monitor that command is Convert V. */
 		if (!native->channel[job->txn.channel].power_asked &&
 		    !native_at_work(native, job->txn.channel))

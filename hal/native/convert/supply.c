@@ -76,7 +76,7 @@ bool supply_ask_one(struct native *native, unsigned n)
 				native_count(native, COUNT_CHECKSUMS);
 		}
 		if (bit < 0)
-			device->power = POWER_PARASITE;
+			device->power = POWER_ASSUMED;
 		if (bit >= 0 || txn.link_error == 0)
 			master_good(native, n);
 		else if (txn.link_error != -ECOMM)

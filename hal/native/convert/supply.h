@@ -20,6 +20,7 @@ int supply_ask_all(struct native *native, struct job *job);
 /*
  * Ask one thermometer that was not asked yet for its supply: the broadcast was answered with a
  * zero, by a parasitic one or by another chip to which the command means something else. A
- * thermometer that does not answer counts as parasitic. False: all are known.
+ * thermometer that does not answer counts as parasitic, and is asked again before it converts.
+ * False: all were asked.
  */
 bool supply_ask_one(struct native *native, unsigned n);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of conversions shared by the thermometers of a wire. */
 #include <errno.h>
+#include <string.h>
 
 #include "hal/chips/find.h"
 #include "hal/chips/thermometers/state.h"
@@ -120,6 +121,54 @@ static void test_noise_at_the_question_does_not_make_a_thermometer_fed_by_the_wi
 		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(other, "temperature"), NULL));
 		TEST_ASSERT_EQUAL_UINT_MESSAGE(0, wire_net.strong_count, "pulled up");
 		wire_net.trouble = NULL;
+		native_end();
+		native_begin();
+	}
+	wire_init(&host, 1, 1);
+	start();
+}
+
+static const struct sim_slave *unheard; /* the next question for its supply fails ... */
+static int fails_with;
+
+static void fail_question(const uint8_t *bytes, size_t n)
+{
+	if (!unheard || n != 10 || bytes[9] != 0xb4 || memcmp(bytes + 1, unheard->rom, 8) != 0)
+		return;
+	unheard = NULL;
+	wire_net.fault = fails_with;
+	wire_net.fault_count = 1;
+}
+
+/* What counts as fed by the wire because its question failed is asked before it converts. */
+static void test_an_error_at_the_question_does_not_make_a_thermometer_fed_by_the_wire(void)
+{
+	static const int errors[] = {-EIO, -ECOMM, -ENXIO};
+
+	for (unsigned i = 0; i < 6; i++) {
+		wire_init(&host, 1, 1);
+		wire_net.passive = i & 1;
+		struct sim_slave *slave = wire_add(0, "DS18B20", 1),
+				 *other = wire_add(0, "DS18B20", 2);
+
+		wire_add(0, "DS2438", 3);
+		wire_set(other, "temperature", 30.5);
+		wire_net.sends = fail_question;
+		start();
+		unheard = other;
+		fails_with = errors[i / 2];
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(slave, "temperature"), NULL));
+		TEST_ASSERT_NULL(unheard);
+		/* That it is fed by the wire, nobody knows. */
+		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(other, "temphigh"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_UINT8(BUS_SUPPLY_UNKNOWN, answer_to(id)->supply);
+		wire_net.strong_count = 0;
+		id = ask(BUS_READ, BUS_INPUT, true, of(other, "temperature"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_DOUBLE(30.5, answer_to(id)->number);
+		TEST_ASSERT_EQUAL_UINT8(BUS_SUPPLY_EXTERNAL, answer_to(id)->supply);
+		TEST_ASSERT_EQUAL_UINT_MESSAGE(0, wire_net.strong_count, "pulled up");
 		native_end();
 		native_begin();
 	}
@@ -432,6 +481,7 @@ int main(void)
 	RUN_TEST(test_a_chip_that_takes_the_question_otherwise_does_not_divide_the_conversion);
 	RUN_TEST(test_a_conversion_that_is_not_read_yet_is_not_overwritten);
 	RUN_TEST(test_noise_at_the_question_does_not_make_a_thermometer_fed_by_the_wire);
+	RUN_TEST(test_an_error_at_the_question_does_not_make_a_thermometer_fed_by_the_wire);
 	RUN_TEST(test_parasites_get_the_strong_pull_up_for_the_whole_conversion);
 	RUN_TEST(test_limits_are_stored_with_the_resolution_that_was_there);
 	RUN_TEST(test_a_limit_on_its_way_to_the_eeprom_is_never_another);
