@@ -356,6 +356,13 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 	struct channel *channel = &native->channel[job->channel];
 	struct known ctx = {.native = native, .n = job->channel};
 
+	/* Its chip has gone meanwhile. */
+	if (!native_has(native, job->channel)) {
+		if (job->searching)
+			job->out = job->mark;
+		scan_on(native, job);
+		return;
+	}
 	if (!job->searching) {
 		search_begin(&job->search, job->kind == JOB_ALARM, job->families[job->family_i]);
 		job->searching = true;

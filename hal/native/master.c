@@ -185,6 +185,15 @@ static void convert_again(struct native *native)
 			job_restart(native, job);
 }
 
+/* Between two steps: a channel has forgotten that it is waited for, or is gone with its chip. */
+static void begin_anew(struct native *native)
+{
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (job->state == JOB_DUE || job->state == JOB_PREPARE ||
+		    (job->txn.device && !native_has(native, job->txn.channel)))
+			job_restart(native, job);
+}
+
 static bool reopen_master(struct native *native)
 {
 	char why[BUS_EVENT_TEXT] = "";
@@ -196,6 +205,7 @@ static bool reopen_master(struct native *native)
 		return false;
 	}
 	take_all_channels(native);
+	begin_anew(native);
 	search_anew(native, native_now(native));
 	return true;
 }
@@ -251,7 +261,8 @@ static bool recover_link(struct native *native, unsigned n)
 
 /*
  * After an error of a link: climb the ladder by one rung that has an effect. True: the caller may
- * try again. False: the master is down, and its jobs were answered.
+ * try again, or the chip is gone and others are left. False: the master is down, and its jobs were
+ * answered.
  */
 bool master_recover(struct native *native, unsigned n, int err)
 {
@@ -263,6 +274,8 @@ bool master_recover(struct native *native, unsigned n, int err)
 		master_down(native, err, err == -ENODEV ? gone : "shutting down");
 		return false;
 	}
+	if (!native_has(native, n))
+		return true;
 	if (err == -ENXIO && channel->rung < OF_LINK + LINK_CHIP_RESET)
 		channel->rung = OF_LINK + LINK_CHIP_RESET;
 	if (channel->rung == RETRY) {

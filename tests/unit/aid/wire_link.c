@@ -51,6 +51,12 @@ static void restart(void)
 	}
 }
 
+/* The chip of the link does not answer any more. */
+static bool is_gone(const struct link *link)
+{
+	return link >= links + wire_net.channels;
+}
+
 /* Begin a call of the link. */
 static int begin(struct link *link)
 {
@@ -62,6 +68,10 @@ static int begin(struct link *link)
 			continue;
 		wire_net.strong_ns = wire_time() - wire_net.strong_begin;
 		sim_wire_strong(&wire_net.wire[i], false, wire_time());
+	}
+	if (is_gone(link)) {
+		spend(SLOT_NS);
+		return -EIO;
 	}
 	if (wire_net.fault_count) {
 		wire_net.fault_count--;
@@ -189,6 +199,8 @@ static int wire_triplet(struct link *link, bool direction)
 static int wire_recover(struct link *link, enum link_rung rung)
 {
 	wire_net.recovered[rung]++;
+	if (is_gone(link))
+		return -EIO;
 	if (wire_net.rung_err[rung])
 		return wire_net.rung_err[rung];
 	if (rung == LINK_POWER_CYCLE) {

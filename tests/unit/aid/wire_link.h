@@ -14,7 +14,8 @@
 
 struct wire_net {
 	struct host *host;
-	unsigned channels, chips; /* chips 1: all channels share one */
+	unsigned channels; /* fewer than at the start: the chips of the others are gone */
+	unsigned chips;    /* 1: all channels share one */
 	struct sim_wire wire[WIRE_CHANNELS];
 	struct link_cost cost; /* of the first link, but the resets */
 	uint64_t resets[WIRE_CHANNELS];

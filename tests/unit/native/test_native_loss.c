@@ -333,6 +333,70 @@ static void test_a_wire_without_rungs_is_tried_again_and_then_opened_anew(void)
 	TEST_ASSERT_EQUAL_UINT64(0, counted("devices_restarted"));
 }
 
+/* At any moment of a measurement of many transactions, and of conversions. */
+static void test_the_chips_that_are_left_go_on_when_one_dies(void)
+{
+	for (unsigned ms = 0; ms < 300; ms += 3) {
+		uint32_t id[4];
+
+		wire_init(&host, 2, 2);
+		struct sim_slave *left = wire_add(0, "DS18B20", 1);
+		const char *const lost[] = {"DS2438", "DS18B20", "DS18B20"};
+
+		start();
+		for (unsigned i = 0; i < 3; i++)
+			wire_add(1, lost[i], i + 2);
+		host_run(&host, bus, host.now + 2 * HOST_S);
+		id[0] = ask(BUS_READ, BUS_INPUT, true, "/26.02005DDF0300/humidity", NULL);
+		id[1] = ask(BUS_READ, BUS_INPUT, true, "/28.03005DDF0300/temperature", NULL);
+		id[2] = ask(BUS_READ, BUS_INPUT, true, "/28.04005DDF0300/temperature", NULL);
+		id[3] = ask(BUS_DIR, BUS_ALARM, true, "/alarm", NULL);
+		host_run(&host, bus, host.now + ms * HOST_MS);
+		wire_net.channels = 1;
+		for (unsigned i = 0; i < 4; i++)
+			answer_to(id[i]);
+		TEST_ASSERT_EQUAL_UINT(0, host_events(&host, BUS_DOWN));
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id[3])->err);
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(left, "temperature"), NULL));
+		native_end();
+		native_begin();
+	}
+	wire_init(&host, 1, 1);
+	start();
+}
+
+/* A wire is opened anew because of another one's errors: what waits for its Convert T. */
+static void test_a_reading_goes_on_after_all_wires_were_opened_anew(void)
+{
+	unsigned anew = 0;
+
+	for (unsigned step = 0; step < 60; step++) {
+		wire_init(&host, 2, 2);
+		struct sim_slave *slave = wire_add(0, "DS18B20", 1),
+				 *other = wire_add(1, "DS2438", 2);
+
+		start();
+		host_run(&host, bus, host.now + 2 * HOST_S);
+		expect(true, of(slave, "power"), "1");
+		uint32_t id = ask(BUS_READ, BUS_INPUT, true, of(slave, "temperature"), NULL);
+
+		ask(BUS_READ, BUS_INPUT, true, of(other, "humidity"), NULL);
+		host_run(&host, bus, host.now + step * HOST_MS / 2);
+		wire_net.rung_err[LINK_BUS_RESET] = -EBUSY;
+		wire_net.fault = -EIO;
+		wire_net.fault_count = 2;
+		int64_t begun = host.now;
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_LESS_THAN_INT64(begun + 3 * HOST_S, host.now);
+		anew += wire_net.opens > 1;
+		native_end();
+		native_begin();
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(20, anew);
+	wire_init(&host, 1, 1);
+	start();
+}
+
 static void test_a_suspended_bus_lets_go_and_comes_back(void)
 {
 	wire_init(&host, 1, 1);
@@ -405,6 +469,8 @@ int main(void)
 	RUN_TEST(test_a_transaction_that_succeeds_leads_down_to_the_ground);
 	RUN_TEST(test_after_a_reset_of_the_chip_a_conversion_begins_anew);
 	RUN_TEST(test_a_wire_without_rungs_is_tried_again_and_then_opened_anew);
+	RUN_TEST(test_the_chips_that_are_left_go_on_when_one_dies);
+	RUN_TEST(test_a_reading_goes_on_after_all_wires_were_opened_anew);
 	RUN_TEST(test_a_suspended_bus_lets_go_and_comes_back);
 	RUN_TEST(test_a_target_that_does_not_open_is_tried_again_for_ever);
 	return UNITY_END();
