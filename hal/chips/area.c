@@ -7,6 +7,7 @@
 #include "hal/chips/area.h"
 #include "hal/owfs/path.h"
 #include "hal/wire/crc.h"
+#include "hal/wire/unfinished.h"
 
 #define BLANK_LOOKS 3 /* more, where nothing but ones was read */
 
@@ -318,7 +319,7 @@ static int check_unit(struct txn *txn, const struct area *area, struct unit unit
 	bool written = area->is_written ? area->is_written(txn, in, visit->want, unit.n)
 	                                : memcmp(in, visit->want, unit.n) == 0;
 	if (written && !area->verify)
-		txn_changed(txn, area, unit.at);
+		unfinished_end(txn->device, area, unit.at);
 	return written ? 0 : -EIO;
 }
 
@@ -380,7 +381,7 @@ static int prepare_unit(struct txn *txn, const struct area *area, struct unit un
 	int err;
 
 	if (is_given(area, unit, at, mask, n)) {
-		txn_changed(txn, area, unit.at);
+		unfinished_end(txn->device, area, unit.at);
 		memcpy(visit->want, bytes, unit.n);
 		visit->have[0] = (uint8_t)~bytes[0];
 		visit->step = WRITE;
@@ -392,7 +393,7 @@ static int prepare_unit(struct txn *txn, const struct area *area, struct unit un
 		return err;
 	memcpy(begun, visit->have, unit.n);
 	bool again = !area->verify && !txn->restarted &&
-	             txn_base(txn, area, unit.at, begun, unit.n);
+	             unfinished_base(txn->device, area, unit.at, begun, unit.n);
 	memcpy(visit->want, begun, unit.n);
 	for (unsigned i = from; i < to; i++) {
 		uint8_t bits = mask ? mask[i - at] : 0xff, *byte = &visit->want[i - unit.at];
@@ -407,9 +408,9 @@ static int prepare_unit(struct txn *txn, const struct area *area, struct unit un
 	if (unit.at < area->fixed)
 		return equal ? 0 : -EIO;
 	if (equal && again)
-		txn_changed(txn, area, unit.at);
+		unfinished_end(txn->device, area, unit.at);
 	if (!equal && !area->verify)
-		txn_keep(txn, area, unit.at, begun, visit->want, unit.n);
+		unfinished_begin(txn->device, area, unit.at, begun, visit->want, unit.n);
 	if (anew)
 		visit->have[0] = (uint8_t)~visit->want[0];
 	visit->step = WRITE;

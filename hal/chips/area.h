@@ -22,7 +22,7 @@
  * Writing, unit by unit: look what is there, put the new bits in, and write if that differs.
  *	with .verify	a scratchpad takes a row, is read back, and copied
  *	without		registers: each row that differs is written, and all are read back. A write
- *			that failed is made again from what stood there before it (txn_base).
+ *			that failed is made again from what stood there before it (unfinished.h).
  * Without .row, the area cannot be written by this master: -EOPNOTSUPP.
  */
 #pragma once

@@ -65,8 +65,8 @@ struct device {
 	bool shadow_known;
 
 	/*
-	 * What stood in registers before a change that has not succeeded yet (txn_keep), and which
-	 * bits of that it was to change.
+	 * What stood in registers before a change that has not succeeded yet, and which bits of it
+	 * were to change: unfinished.h.
 	 */
 	uint8_t base[32], asked[32];
 	uint16_t base_at;

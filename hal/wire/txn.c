@@ -395,42 +395,6 @@ int txn_verify(struct txn *txn, bool alarm)
 	return there;
 }
 
-static bool has_base(const struct device *device, const void *which, unsigned at)
-{
-	return device->base_of == which && device->base_at == at;
-}
-
-bool txn_base(const struct txn *txn, const void *which, unsigned at, uint8_t *bytes, size_t n)
-{
-	const struct device *device = txn->device;
-
-	if (!has_base(device, which, at))
-		return false;
-	for (size_t i = 0; i < n; i++)
-		bytes[i] = (uint8_t)((bytes[i] & device->asked[i]) |
-		                     (device->base[i] & ~device->asked[i]));
-	return true;
-}
-
-void txn_keep(struct txn *txn, const void *which, unsigned at, const uint8_t *bytes,
-              const uint8_t *want, size_t n)
-{
-	struct device *device = txn->device;
-
-	assert(n <= sizeof(device->base));
-	device->base_of = which;
-	device->base_at = (uint16_t)at;
-	memcpy(device->base, bytes, n);
-	for (size_t i = 0; i < n; i++)
-		device->asked[i] = bytes[i] ^ want[i];
-}
-
-void txn_changed(struct txn *txn, const void *which, unsigned at)
-{
-	if (has_base(txn->device, which, at))
-		txn->device->base_of = NULL;
-}
-
 /*
  * A driver may stay in the kernel for long, between two of its files as well: nobody knows when in
  * its call the chip answered.

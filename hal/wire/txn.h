@@ -141,18 +141,6 @@ int txn_ask(struct txn *txn, const uint8_t *command, size_t command_n, uint8_t *
 int txn_ask_crc16(struct txn *txn, const uint8_t *command, size_t command_n, uint8_t *bytes,
                   size_t n);
 /*
- * Registers are changed by reading, changing and writing them. A write that goes wrong may leave
- * what no request asked for, and made again must not begin with that. txn_base, with what is there:
- * if such a write of these registers (which: their area; at: where in it) has not succeeded yet,
- * bytes become what was there before it, but for the bits that it was to change: they may have
- * changed, and a write of others must not undo that. txn_keep, ahead of a write: bytes are what it
- * begins with, want what it is to make of them. txn_changed: it has succeeded.
- */
-bool txn_base(const struct txn *txn, const void *which, unsigned at, uint8_t *bytes, size_t n);
-void txn_keep(struct txn *txn, const void *which, unsigned at, const uint8_t *bytes,
-              const uint8_t *want, size_t n);
-void txn_changed(struct txn *txn, const void *which, unsigned at);
-/*
  * What was read of a chip is kept with the device for other requests: txn_share, of what
  * (an area, or anything else that has an address) n bytes from `at` on; begun_ns: when reading
  * began. txn_shared: bytes that are kept and serve this request; false: they have to be read.

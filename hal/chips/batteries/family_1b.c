@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "hal/chips/family.h"
+#include "hal/wire/unfinished.h"
 
 enum { PAGES_OF_CHIP = 3, PAGE = 32, MARK_AT = 0x20 };
 enum { CELSIUS = 0x60, STATUS = 0x62, VOLTS = 0x77, COUNT = 0x82 };
@@ -191,8 +192,8 @@ static int write_increment(struct txn *txn)
 		return err;
 	if (visit->step == 0) {
 		memcpy(want, now, 2);
-		txn_base(txn, &registers, COUNT, want, 2);
-		txn_keep(txn, &registers, COUNT, want, want, 2);
+		unfinished_base(txn->device, &registers, COUNT, want, 2);
+		unfinished_begin(txn->device, &registers, COUNT, want, want, 2);
 		want[1] = (uint8_t)(want[1] + (++want[0] == 0));
 		visit->step = 1;
 		if (memcmp(now, want, 2) != 0)
@@ -200,7 +201,7 @@ static int write_increment(struct txn *txn)
 	}
 	if (memcmp(now, want, 2) != 0)
 		return -EIO;
-	txn_changed(txn, &registers, COUNT);
+	unfinished_end(txn->device, &registers, COUNT);
 	return 0;
 }
 
@@ -212,7 +213,7 @@ static int write_reset(struct txn *txn)
 	if (txn->number[0] == 0)
 		return 0;
 	if (txn->phase++ == 0) {
-		txn_changed(txn, &registers, COUNT);
+		unfinished_end(txn->device, &registers, COUNT);
 		return family_1b_command(txn, 0xb8, COPY_NS);
 	}
 	err = read_count(txn, now);

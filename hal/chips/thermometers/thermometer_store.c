@@ -29,6 +29,7 @@
 #include "hal/chips/thermometers/state.h"
 #include "hal/chips/thermometers/thermometer.h"
 #include "hal/chips/thermometers/thermometer_proof.h"
+#include "hal/wire/unfinished.h"
 
 #define COPY_SCRATCHPAD 0x48
 #define RECALL 0xb8
@@ -120,19 +121,20 @@ static int stored(struct txn *txn)
 {
 	struct thermometer *chip = thermometer_of(txn->device);
 
-	txn_changed(txn, &thermometer_area, SP_HIGH);
+	unfinished_end(txn->device, &thermometer_area, SP_HIGH);
 	chip->stored = chip->resolution;
 	chip->recalled = true;
 	return 0;
 }
 
-/* What the EEPROM has, but for the field; after a write that failed see txn_base(). */
+/* What the EEPROM has, but for the field; after a write that failed see unfinished_base(). */
 static int want_settings(struct txn *txn, const uint8_t scratchpad[9])
 {
 	struct visit *visit = visit_of(txn);
 
 	memcpy(visit->scratchpad, scratchpad, sizeof(visit->scratchpad));
-	bool failed = txn_base(txn, &thermometer_area, SP_HIGH, visit->scratchpad + SP_HIGH, 3);
+	bool failed = unfinished_base(txn->device, &thermometer_area, SP_HIGH,
+	                              visit->scratchpad + SP_HIGH, 3);
 	memcpy(visit->kept, visit->scratchpad + SP_HIGH, 3);
 	visit->proven |= failed;
 	uint8_t *byte = visit->scratchpad + visit->at;
@@ -206,8 +208,8 @@ static int verify(struct txn *txn)
 	if (!has_settings(txn, scratchpad))
 		return scratchpad[SP_CONFIG] != visit->scratchpad[SP_CONFIG] ? -EINVAL : -EBADMSG;
 	if (visit->proven)
-		txn_keep(txn, &thermometer_area, SP_HIGH, visit->kept, visit->scratchpad + SP_HIGH,
-		         3);
+		unfinished_begin(txn->device, &thermometer_area, SP_HIGH, visit->kept,
+		                 visit->scratchpad + SP_HIGH, 3);
 	txn->phase = visit->proven ? COPY : PROBE;
 	return TXN_MORE;
 }

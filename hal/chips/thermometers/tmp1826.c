@@ -18,6 +18,7 @@
 #include "hal/chips/steady.h"
 #include "hal/chips/thermometers/tmp1826.h"
 #include "hal/owfs/path.h"
+#include "hal/wire/unfinished.h"
 
 #define READ_SCRATCHPAD 0xbe
 #define CONVERT 0x44
@@ -264,7 +265,7 @@ int tmp1826_read_format(struct txn *txn)
 #define SETTINGS 9
 #define FIRST_HALF 3 /* settings that stand ahead of the scratchpad's first CRC8 */
 
-static const char base[] = "settings"; /* for txn_keep() */
+static const char base[] = "settings"; /* for unfinished_begin() */
 
 /* All settings, in the order in which they are written. */
 static void settings_of_pad(const uint8_t pad[PAD], uint8_t settings[SETTINGS])
@@ -333,7 +334,7 @@ int tmp1826_write_limit(struct txn *txn)
 	if (txn->phase == LOOK) {
 		memcpy(begun, have, SETTINGS);
 		if (!txn->restarted)
-			txn_base(txn, base, 0, begun, SETTINGS);
+			unfinished_base(txn->device, base, 0, begun, SETTINGS);
 		err = wanted_settings(txn, begun, visit->want);
 		if (err)
 			return err;
@@ -343,7 +344,7 @@ int tmp1826_write_limit(struct txn *txn)
 		txn->phase = VERIFY;
 		if (equal)
 			return TXN_MORE;
-		txn_keep(txn, base, 0, begun, visit->want, SETTINGS);
+		unfinished_begin(txn->device, base, 0, begun, visit->want, SETTINGS);
 		err = write_settings(txn, visit->want);
 		return err ? err : TXN_MORE;
 	}
@@ -351,7 +352,7 @@ int tmp1826_write_limit(struct txn *txn)
 	if (memcmp(have, visit->want, SETTINGS) != 0)
 		return -EIO;
 	if (txn->phase == VERIFY) {
-		txn_changed(txn, base, 0);
+		unfinished_end(txn->device, base, 0);
 		txn->phase = CHECK;
 		return txn_command_strong(txn, TXN_BYTES(COPY_SCRATCHPAD_1), PROGRAM_NS);
 	}

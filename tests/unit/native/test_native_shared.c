@@ -313,7 +313,7 @@ static void test_a_long_memory_that_is_written_meanwhile_is_not_half_old(void)
 	TEST_ASSERT_GREATER_THAN_UINT(3, between);
 }
 
-/* Written at each moment between the elements; what is answered then may be old, but is not kept. */
+/* Written at each moment between elements: what is answered then may be old, but is not kept. */
 static void test_a_list_that_is_written_meanwhile_is_not_kept(void)
 {
 	static const struct {
