@@ -43,6 +43,16 @@ static void look_for_twin(struct native *native, struct device *device, unsigned
 	native_event(native, BUS_NOTE, device->rom, 0, text);
 }
 
+/* Requests that wait have the place of their device, and not its id. */
+static void note_asked(struct native *native)
+{
+	for (unsigned i = 0; i < native->table.count; i++)
+		native->table.devices[i].asked = false;
+	for (struct job *job = NULL; (job = native_job(native, job));)
+		if (job->txn.device)
+			job->txn.device->asked = true;
+}
+
 void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
 {
 	struct device *device = device_find(&native->table, rom);
@@ -51,6 +61,7 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 	if (device && device->present && device->channel != n)
 		look_for_twin(native, device, n, now);
 	if (!known) {
+		note_asked(native);
 		device = device_add(&native->table, rom, sensors_family(&native->sensors, rom), n);
 		if (!device) {
 			native_event(native, BUS_NOTE, NULL, -ENOSPC,

@@ -48,6 +48,7 @@ struct device {
 	bool likely;      /* found by the first bits of its id, and has not answered since */
 	bool settled;     /* was read or written since it came or restarted */
 	bool locked;      /* a job of several transactions is at work with it */
+	bool asked;       /* requests name it: nothing else takes its place */
 	uint8_t failures; /* requests in a row that it failed */
 	uint8_t missed;   /* searches in a row that did not see it */
 	uint8_t cut;      /* so many bits of it the last background search read; 0: all */
@@ -91,8 +92,8 @@ void device_table_destroy(struct device_table *table);
 /* By the first seven bytes of its id; NULL: it is not in the table. */
 struct device *device_find(struct device_table *table, const uint8_t rom[8]);
 /*
- * The device's place, a new one if need be: of a full table that of a device that is away and has
- * no alias. NULL: no place.
+ * The device's place, a new one if need be: of a full table that of a device that is away, has no
+ * alias and is not asked for. NULL: no place.
  */
 struct device *device_add(struct device_table *table, const uint8_t rom[8],
                           const struct family *family, unsigned channel);

@@ -169,6 +169,55 @@ static unsigned count_twins(const char **text)
 	return n;
 }
 
+/* Of ids that were there once: the next new one takes the place of a device that is lost. */
+static void fill_table(void)
+{
+	struct device_table *table = &((struct native *)bus)->table;
+	const struct device *first = &table->devices[0];
+	uint8_t rom[8] = {0x01};
+
+	while (table->count < DEVICE_MAX) {
+		rom[1] = (uint8_t)table->count;
+		rom[2] = (uint8_t)(table->count >> 8);
+		TEST_ASSERT_NOT_NULL(device_add(table, rom, first->family, 0));
+	}
+}
+
+/* Others wait for a device while one request finds that it is lost, and a new one takes a place. */
+static void test_no_request_gets_another_device_than_it_names(void)
+{
+	static const struct {
+		const char *chip, *property, *next;
+	} rows[] = {{"DS18B20", "temperature", "DS18B20"},
+	            {"DS18B20", "scratchpad", "DS18B20"},
+	            {"DS2408", "sensed.BYTE", "DS2401"}};
+
+	for (unsigned row = 0; row < 3; row++) {
+		uint32_t id[20];
+
+		wire_init(&host, 1, 1);
+		struct sim_slave *lost = wire_add(0, rows[row].chip, 1);
+		start();
+		host_run(&host, bus, host.now + 2 * HOST_S);
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(lost, rows[row].property), NULL));
+		fill_table();
+		sim_wire_plug(&wire_net.wire[0], lost, false, wire_time());
+		for (unsigned i = 0; i < 20; i++)
+			id[i] = ask(BUS_READ, BUS_INPUT, true, of(lost, rows[row].property), NULL);
+		for (unsigned ms = 0; ms < 2000 && !host_events(&host, BUS_LOST); ms++)
+			host_run(&host, bus, host.now + HOST_MS);
+		TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_LOST));
+		wire_add(0, rows[row].next, 2);
+		answer_to(ask(BUS_DIR, BUS_ALARM, true, "/uncached", NULL));
+		for (unsigned i = 0; i < 20; i++)
+			TEST_ASSERT_EQUAL_INT(-ENODEV, answer_to(id[i])->err);
+		native_end();
+		native_begin();
+	}
+	wire_init(&host, 1, 1);
+	start();
+}
+
 static void test_an_id_on_two_wires_is_reported_once(void)
 {
 	const char *text = "";
@@ -461,6 +510,7 @@ int main(void)
 	RUN_TEST(test_the_next_one_of_a_wire_that_lost_several_is_looked_for_once);
 	RUN_TEST(test_a_stranger_whose_id_begins_the_same_passes_for_a_lost_device_once);
 	RUN_TEST(test_a_lost_device_for_which_a_stranger_passes_is_lost_again);
+	RUN_TEST(test_no_request_gets_another_device_than_it_names);
 	RUN_TEST(test_an_id_on_two_wires_is_reported_once);
 	RUN_TEST(test_a_device_that_is_moved_and_moved_back_is_no_twin);
 	RUN_TEST(test_the_ladder_is_climbed_until_the_chip_answers);
