@@ -44,13 +44,13 @@ static void look_for_twin(struct native *native, struct device *device, unsigned
 }
 
 /* Requests that wait have the place of their device, and not its id. */
-static void note_asked(struct native *native)
+static void note_named(struct native *native)
 {
 	for (unsigned i = 0; i < native->table.count; i++)
-		native->table.devices[i].asked = false;
+		native->table.devices[i].named = false;
 	for (struct job *job = NULL; (job = native_job(native, job));)
 		if (job->txn.device)
-			job->txn.device->asked = true;
+			job->txn.device->named = true;
 }
 
 void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int64_t now)
@@ -61,7 +61,7 @@ void presence_found(struct native *native, const uint8_t rom[8], unsigned n, int
 	if (device && device->present && device->channel != n)
 		look_for_twin(native, device, n, now);
 	if (!known) {
-		note_asked(native);
+		note_named(native);
 		device = device_add(&native->table, rom, sensors_family(&native->sensors, rom), n);
 		if (!device) {
 			native_event(native, BUS_NOTE, NULL, -ENOSPC,

@@ -39,7 +39,7 @@ static struct device *free_device(struct device_table *table)
 	for (unsigned i = 0; i < DEVICE_MAX; i++) {
 		struct device *device = &table->devices[i];
 
-		if (!device->present && !device->locked && !device->asked && !table->aliases[i][0])
+		if (!device->present && !device->locked && !device->named && !table->aliases[i][0])
 			return device;
 	}
 	return NULL;

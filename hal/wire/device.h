@@ -48,7 +48,7 @@ struct device {
 	bool likely;      /* found by the first bits of its id, and has not answered since */
 	bool settled;     /* was read or written since it came or restarted */
 	bool locked;      /* a job of several transactions is at work with it */
-	bool asked;       /* requests name it: nothing else takes its place */
+	bool named;       /* requests name it: nothing else takes its place */
 	uint8_t failures; /* requests in a row that it failed */
 	uint8_t missed;   /* searches in a row that did not see it */
 	uint8_t cut;      /* so many bits of it the last background search read; 0: all */
