@@ -24,6 +24,11 @@ static inline bool device_power_known(uint8_t power)
 	return power != POWER_UNKNOWN && power != POWER_ASSUMED;
 }
 
+static inline bool device_is_fed(uint8_t power)
+{
+	return power == POWER_PARASITE || power == POWER_ASSUMED;
+}
+
 struct family;
 
 /* What was read of a chip: txn_share(). */

@@ -163,7 +163,7 @@ static int choose_pullup(const struct txn *txn, enum link_after *after)
 	bool strong = txn->link->facts->strong;
 
 	*after = strong ? LINK_STRONG : LINK_IDLE;
-	return !strong && txn->device && txn->device->power == POWER_PARASITE ? -EOPNOTSUPP : 0;
+	return !strong && txn->device && device_is_fed(txn->device->power) ? -EOPNOTSUPP : 0;
 }
 
 static int hold_pullup(struct txn *txn, int err, int64_t ns)

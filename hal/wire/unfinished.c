@@ -15,9 +15,13 @@ bool unfinished_base(const struct device *device, const void *which, unsigned at
 {
 	if (!has_base(device, which, at))
 		return false;
-	for (size_t i = 0; i < n; i++)
-		bytes[i] = (uint8_t)((bytes[i] & device->asked[i]) |
-		                     (device->base[i] & ~device->asked[i]));
+	for (size_t i = 0; i < n; i++) {
+		uint8_t asked = device->asked[i];
+		bool done = ((bytes[i] ^ device->base[i]) & asked) == asked;
+
+		/* some bits of the change alone make a number that nobody asked for */
+		bytes[i] = done ? device->base[i] ^ asked : device->base[i];
+	}
 	return true;
 }
 

@@ -42,7 +42,7 @@ static void look_at_job(struct schedule_plan *plan, const struct job *job, bool 
 		return;
 	}
 	plan->due++;
-	if (!feeds && (device->power == POWER_PARASITE || device->power == POWER_ASSUMED)) {
+	if (!feeds && device_is_fed(device->power)) {
 		plan->parasitic_due = true;
 		plan->fed = job;
 	} else {

@@ -267,6 +267,8 @@ static void restore_outputs(struct engine *e, const char *path)
 		else
 			signal_forget_written(s);
 		engine_write_check(e, s);
+		if (!signal_is_read(s) && !signal_changed(s))
+			signal_lapse(s); /* what it has now is not known */
 		engine_publish(e, s);
 	}
 }

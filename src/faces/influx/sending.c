@@ -139,7 +139,7 @@ static void batch_over(struct face *face, int64_t now_ns)
 	if (p->missed_ns) {
 		point = missed_point(&p->missed, p->missed_ns);
 		missed_resume(&p->missed, &point, now_ns);
-		p->missed_ns = 0;
+		p->missed_ns = p->pending.dropped_ns = 0;
 	}
 	if (p->batch_all) {
 		point = missed_point(&p->missed, p->looked_ns);

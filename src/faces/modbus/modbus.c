@@ -240,11 +240,14 @@ static void make_places(struct modbus *m)
 	int count = m->face->ows ? ows_count(m->face->ows) : 0;
 	unsigned left_out = 0, last;
 
+	/* what is in memory has all that the file had */
+	bool unkept = m->known && !m->kept;
+
 	m->again_ns = ows_now() + AGAIN_NS;
 	m->map = (struct map){0};
 	m->signals = 0;
-	m->known = !options->given ||
-	           ((!fixed || read_map(m, fixed)) && (!*m->path || read_map(m, m->path)));
+	m->known = !options->given || ((!fixed || read_map(m, fixed)) &&
+	                               (!*m->path || read_map(m, m->path) || unkept));
 	if (!m->known)
 		map_free(&m->map);
 	else if (!m->kept)

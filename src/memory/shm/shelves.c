@@ -81,6 +81,23 @@ static uint32_t record_of(const struct image *image, const char *name)
 	return 0;
 }
 
+/* The record that follows one of the image before; by name unless that follows another. 0: none. */
+static uint32_t follower(const struct image *image, const struct earlier *from, uint32_t record,
+                         const uint32_t *records)
+{
+	const char *name = earlier_name(from, record);
+	uint32_t named = name ? record_of(image, name) : 0;
+
+	if (!name || !records)
+		return named;
+	if (records[record - 1] != UINT32_MAX)
+		return records[record - 1] + 1;
+	for (uint32_t i = 0; i + 1 < from->infos.count; i++)
+		if (records[i] != UINT32_MAX && records[i] + 1 == named)
+			return 0;
+	return named;
+}
+
 void shelves_carry(struct image *image, const void *before, size_t size, const uint32_t *records)
 {
 	struct earlier from = {.base = before, .size = size};
@@ -91,15 +108,10 @@ void shelves_carry(struct image *image, const void *before, size_t size, const u
 	for (uint32_t i = 0; i < from.shelves.count && entered < OWS_SHELVES; i++) {
 		const char *at = from.base + from.shelves.off + (size_t)i * from.shelves.size;
 		struct ows_shelf_entry entry;
-		const char *name;
 
 		if (!reader_entry((const void *)at, &entry, sizeof(entry)) || !entry.record)
 			continue;
-		name = earlier_name(&from, entry.record);
-		if (name && records && records[entry.record - 1] != UINT32_MAX)
-			entry.record = records[entry.record - 1] + 1;
-		else
-			entry.record = name ? record_of(image, name) : 0;
+		entry.record = follower(image, &from, entry.record, records);
 		if (entry.record)
 			image_shelf(image, entered++, &entry);
 	}
