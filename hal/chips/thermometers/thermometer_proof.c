@@ -81,19 +81,26 @@ int64_t thermometer_convert_ns(const struct device *device)
 	return 750 * TXN_MS >> (12 - chip->resolution);
 }
 
-/* What it may have begun before goes on, if it ignores this; it ends when it is not busy now. */
-static void thermometer_proof_send(struct thermometer *chip, int64_t now, int64_t longest)
+/*
+ * When no conversion ends earlier that it may be at work with, once it has heard: what it may have
+ * begun before goes on, if it ignores this; it ends when it is not busy now.
+ */
+static int64_t least_ns(const struct thermometer *chip, int64_t now, int64_t longest)
 {
 	if (now >= chip->busy_ns)
-		chip->least_ns = now + longest;
-	else if (now >= chip->least_ns)
-		chip->least_ns = now;
-	if (chip->busy_ns < now + longest)
-		chip->busy_ns = now + longest;
-	if (!chip->since_ns)
-		chip->since_ns = chip->least_ns;
+		return now + longest;
+	return now > chip->least_ns ? now : chip->least_ns;
 }
 
+static void thermometer_proof_send(struct thermometer *chip, int64_t now, int64_t longest)
+{
+	if (!chip->since_ns)
+		chip->since_ns = least_ns(chip, now, longest);
+	if (chip->busy_ns < now + longest)
+		chip->busy_ns = now + longest;
+}
+
+/* If it has not heard, what it holds may be of one that it was at work with before. */
 void thermometer_told(struct device *device, int64_t now, int64_t longest)
 {
 	thermometer_proof_send(device->own, now, longest);
@@ -119,6 +126,7 @@ void thermometer_converts(struct device *device, int64_t now, int64_t longest, b
 	chip->proves = chip->converted_ns && chip->raw_ns >= chip->converted_ns && !chip->tried;
 	if (chip->converted_ns)
 		chip->earlier_ns = ended_ns(device);
+	chip->least_ns = least_ns(chip, now, longest);
 	thermometer_proof_send(chip, now, longest);
 	set_end(chip, now + longest, longest);
 	chip->tried = false;
