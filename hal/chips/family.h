@@ -53,6 +53,7 @@ struct family {
 	bool thermometer; /* takes Convert T, has its resolution in the scratchpad */
 	bool fixed;       /* ... but its resolution cannot be changed */
 	bool alarms;      /* answers the conditional search */
+	bool latches;     /* ... and a property tells whether it did */
 	bool is_virtual;  /* no chip: a table of /statistics and the like */
 	bool several;     /* chips have this code: device.kind says which of them it is */
 	uint16_t flags;   /* FLAG_ */

@@ -168,14 +168,14 @@ struct known {
 	struct device *device; /* at which the pass was cut */
 };
 
-/* The only device of the channel that begins so (that can be in alarm); NULL: none or several. */
+/* The only device of the channel that begins so; NULL: none or several. */
 static struct device *only_device(const struct native *native, unsigned n, const uint8_t prefix[8],
-                                  unsigned bits, bool alarms)
+                                  unsigned bits)
 {
 	struct device *only = NULL;
 
 	for (struct device *device = NULL; (device = native_device(native, n, device));) {
-		if ((alarms && !device->family->alarms) || !search_same(device->rom, prefix, bits))
+		if (!search_same(device->rom, prefix, bits))
 			continue;
 		if (only)
 			return NULL;
@@ -193,7 +193,7 @@ static bool is_known(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t 
 	/* A pass that went to the end may have found a branch behind many bits. */
 	if (bits < APART + (branch > FAMILY_BITS ? branch : FAMILY_BITS))
 		return false;
-	struct device *only = only_device(native, known->n, prefix, bits - APART, false);
+	struct device *only = only_device(native, known->n, prefix, bits - APART);
 	/* An astray device has to answer; a restarted bridge has some bits of its id alone. */
 	if (!only || only->astray || only->rom[0] == DS28E18_CODE ||
 	    !search_same(only->rom, prefix, bits) || locate_wants(native, prefix, bits))
@@ -317,14 +317,21 @@ bool hunt_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	return false;
 }
 
-static bool is_lone(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
+/*
+ * The rest of its id is not read, so it may be one that is not known yet: which its latch tells. A
+ * thermometer has none: to be found is its alarm, and its id is read whole, with the checksum.
+ */
+static bool is_latched(void *ctx, const uint8_t prefix[8], unsigned bits, uint8_t rom[8])
 {
 	const struct known *known = ctx;
-	const struct device *only = only_device(known->native, known->n, prefix, bits, true);
+	const struct device *only = bits < FAMILY_BITS
+	                                    ? NULL
+	                                    : only_device(known->native, known->n, prefix, bits);
 
-	if (only)
-		memcpy(rom, only->rom, sizeof(only->rom));
-	return only;
+	if (!only || !only->family->latches)
+		return false;
+	memcpy(rom, only->rom, sizeof(only->rom));
+	return true;
 }
 
 /* On to the next family, the next channel, the end. */
@@ -368,7 +375,7 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		job->searching = true;
 		job->mark = job->out;
 		if (job->kind == JOB_ALARM && ++channel->alarm_searches % FULL_EVERY)
-			job->search.lone = is_lone;
+			job->search.lone = is_latched;
 	}
 	job->search.ctx = &ctx;
 	int found = next_device(native, job->channel, &job->search, job);

@@ -266,8 +266,9 @@ static const struct property properties[] = {
 #define S(k, name) {"EDS00" #k "/" name, name}
 /* clang-format on */
 
-CHIP_FAMILY(7e, "EDS", CHECKSUM, .alarms = true, .flags = FLAG_ALARM | FLAG_TEMPERATURE,
-            .several = true, .identify = eds_identify, .model = "device_type",
+CHIP_FAMILY(7e, "EDS", CHECKSUM, .alarms = true, .latches = true,
+            .flags = FLAG_ALARM | FLAG_TEMPERATURE, .several = true, .identify = eds_identify,
+            .model = "device_type",
             SCAN(S(64, "temperature"), S(65, "temperature"), S(65, "humidity"), S(65, "dew_point"),
                  S(65, "heat_index"), S(65, "humidex"), S(66, "temperature"), S(66, "pressure"),
                  S(66, "inHg"), S(67, "temperature"), S(67, "light"), S(68, "temperature"),

@@ -139,6 +139,6 @@ static const struct property properties[] = {
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 331, .how = WAY_ALARM),
 };
 
-CHIP_FAMILY(12, "DS2406", PRESENCE, .alarms = true, .flags = FLAG_ALARM,
+CHIP_FAMILY(12, "DS2406", PRESENCE, .alarms = true, .latches = true, .flags = FLAG_ALARM,
             SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
             PROPERTIES(properties));

@@ -143,7 +143,7 @@ static const struct property properties[] = {
 	PROPERTY("set_alarm", UNSIGNED, STABLE, BOTH, .digits = 333, .how = WAY_ALARM),
 };
 
-CHIP_FAMILY(1c, "DS28E04", PRESENCE, .alarms = true,
+CHIP_FAMILY(1c, "DS28E04", PRESENCE, .alarms = true, .latches = true,
             .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
             SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
             PROPERTIES(properties));

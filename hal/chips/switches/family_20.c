@@ -306,7 +306,7 @@ static const struct property properties[] = {
 	VOLT("volt2", HALF_RANGE, WAY_VOLT, HALF),
 };
 
-CHIP_FAMILY(20, "DS2450", CHECKSUM, .alarms = true,
+CHIP_FAMILY(20, "DS2450", CHECKSUM, .alarms = true, .latches = true,
             .flags = FLAG_ALARM | FLAG_OVERDRIVE | FLAG_VOLT,
             SCAN({"volt.A", "volt_a"}, {"volt.B", "volt_b"}, {"volt.C", "volt_c"},
                  {"volt.D", "volt_d"}),

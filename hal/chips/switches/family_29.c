@@ -326,7 +326,7 @@ static const struct property properties[] = {
 	FLAG("strobe", STABLE, BOTH, DS2408_STROBE, .how = WAY_STROBE),
 };
 
-CHIP_FAMILY(29, "DS2408", PRESENCE, .alarms = true,
+CHIP_FAMILY(29, "DS2408", PRESENCE, .alarms = true, .latches = true,
             .flags = FLAG_RESUME | FLAG_ALARM | FLAG_OVERDRIVE,
             SCAN({"sensed.BYTE", "inputs"}, {"PIO.BYTE", "outputs"}), AREAS(areas), HOW(how),
             PROPERTIES(properties));

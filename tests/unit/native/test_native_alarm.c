@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the alarm search of the native bus. */
+#include <stdio.h>
 #include <string.h>
 
 #include "unity.h"
@@ -40,6 +41,94 @@ static void test_alarms_list_the_devices_in_alarm(void)
 	id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/29", NULL);
 	TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
 	TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
+}
+
+/* So often that each search in a row is made, whole and not. */
+#define SEARCHES 40
+
+static void expect_alarms(const char *where, const char *list)
+{
+	for (unsigned i = 0; i < SEARCHES; i++) {
+		uint32_t id = ask(BUS_DIR, BUS_ALARM, true, where, NULL);
+
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		TEST_ASSERT_EQUAL_STRING(list, (char *)data[id]);
+	}
+	forget();
+}
+
+/* To be in the search is their alarm: no other chip makes it. */
+static void test_no_thermometer_is_in_alarm_for_another_chip(void)
+{
+	static const char *const others[] = {"TMP1826", "DS18B20", "DS18S20", "DS2408"};
+	char list[80];
+
+	for (unsigned k = 0; k < 4; k++) {
+		wire_init(&host, 1, 1);
+		struct sim_slave *calm = wire_add(0, "DS18B20", 1),
+				 *other = wire_add(0, others[k], 2);
+
+		wire_set(calm, "temperature", 20);
+		if (k < 3)
+			wire_set(other, "temperature", 90);
+		start();
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(calm, "temphigh"), "30"));
+		if (k == 0)
+			TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(other, "temphigh"), "80"));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(calm, "templow"), "10"));
+		TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/simultaneous/temperature", "1"));
+		host_run(&host, bus, host.now + HOST_S);
+		forget();
+		snprintf(list, sizeof(list), "/alarm%s\n", name_of(other));
+		expect_alarms("/alarm", list);
+		expect_alarms("/alarm/28", k == 1 ? list : "");
+		tearDown();
+		setUp();
+	}
+}
+
+/* With the limits of the factory, before a search in the background has met it. */
+static void test_one_that_is_new_is_in_alarm_itself(void)
+{
+	char list[80];
+
+	wire_init(&host, 1, 1);
+	struct sim_slave *calm = wire_add(0, "DS18B20", 1);
+
+	wire_set(calm, "temperature", 20);
+	start();
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(calm, "temphigh"), "30"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(calm, "templow"), "10"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_READ, of(calm, "temperature"), NULL));
+	struct sim_slave *new = wire_add(0, "DS18B20", 3);
+	wire_set(new, "temperature", 90);
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, "/simultaneous/temperature", "1"));
+	host_run(&host, bus, host.now + 800 * HOST_MS);
+	forget();
+	snprintf(list, sizeof(list), "/alarm%s\n", name_of(new));
+	expect_alarms("/alarm/28", list);
+}
+
+/* Each slot of a search that nobody answers. */
+static void test_no_turned_slot_makes_an_alarm(void)
+{
+	static struct trouble trouble;
+
+	wire_init(&host, 1, 1);
+	wire_net.trouble = &trouble;
+	trouble_none(&trouble);
+	wire_add(0, "DS18B20", 1);
+	start();
+	host_run(&host, bus, host.now + 2 * HOST_S);
+	for (uint32_t at = 8; at < 12; at++) {
+		trouble_none(&trouble);
+		trouble.kind = TROUBLE_TURN;
+		trouble.at = at;
+		trouble.mask = 1;
+		uint32_t id = ask(BUS_DIR, BUS_ALARM, true, "/alarm/28", NULL);
+		(void)answer_to(id);
+		TEST_ASSERT_EQUAL_STRING("", (char *)data[id]);
+	}
 }
 
 static void test_an_alarm_search_goes_no_further_than_its_family(void)
@@ -154,6 +243,9 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_alarms_list_the_devices_in_alarm);
+	RUN_TEST(test_no_thermometer_is_in_alarm_for_another_chip);
+	RUN_TEST(test_one_that_is_new_is_in_alarm_itself);
+	RUN_TEST(test_no_turned_slot_makes_an_alarm);
 	RUN_TEST(test_an_alarm_search_goes_no_further_than_its_family);
 	RUN_TEST(test_an_alarm_s_next_request_is_waited_for);
 	RUN_TEST(test_one_register_read_serves_por_and_latch_of_a_visit);
