@@ -15,6 +15,7 @@
 #define FORCE_ROWS_MAX 0x100000u
 #define GIVEN 0x01u
 #define SAFE 0x02u
+#define APPLIED 0x04u /* where it is not known, an input is not written again either */
 
 /* All of this file is of owsd alone: another version of owsd that lays it out anew counts up. */
 struct force_header { /* 64 bytes */
@@ -192,7 +193,8 @@ void force_put(struct force *force, uint32_t row, const struct force_command *co
 	struct row_slot slot = {
 		.value = command->value,
 		.stamp = command->stamp,
-		.flags = (command->given ? GIVEN : 0) | (command->safe ? SAFE : 0),
+		.flags = (command->given ? GIVEN : 0) | (command->safe ? SAFE : 0) |
+	                 (command->applied ? APPLIED : 0),
 		.controller = command->controller,
 	};
 
@@ -234,6 +236,7 @@ void force_get(const struct force *force, uint32_t row, struct force_command *co
 		.stamp = slot.stamp,
 		.given = slot.flags & GIVEN,
 		.safe = slot.flags & SAFE,
+		.applied = slot.flags & APPLIED,
 		.controller = slot.controller,
 	};
 	/* its entry is another's by now: no controller would come back for the command */

@@ -49,6 +49,7 @@ struct force_command {
 	uint32_t stamp;
 	bool given;          /* false: no program's command is in force */
 	bool safe;           /* SafeValue is */
+	bool applied;        /* on the bus, and its controller knows */
 	uint32_t controller; /* an index; FORCE_NOBODY: none would come back for it */
 };
 /* who.serial 0: the index is free. */

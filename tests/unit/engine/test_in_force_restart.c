@@ -3,6 +3,7 @@
  * Which command is in force after a restart of owsd: the table of docs/semantics.md, section 3,
  * cell by cell, and commands that were superseded.
  */
+#include <errno.h>
 #include <string.h>
 
 #include "unity.h"
@@ -83,6 +84,23 @@ static void test_a_controller_that_came_back_gets_to_know_that_its_command_is_ap
 	come_back();
 	beat_on(SCENE_S);
 	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.controllers[1], 1)->taken);
+	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.controllers[1], 1)->applied);
+}
+
+static void test_a_command_of_an_output_is_applied_anew_when_it_is_written_after_a_restart(void)
+{
+	uint32_t stamp;
+
+	controller_set_all(true);
+	stamp = giving_slot(&s.controllers[1], 1)->stamp;
+	scene_reload(&s, NULL); /* it remembers that all was applied */
+	restart_owsd();
+	s.bus[0].latency_ns = SCENE_S;
+	come_back();
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.controllers[1], 1)->taken);
+	TEST_ASSERT_EQUAL_UINT32(0, giving_slot(&s.controllers[1], 1)->applied);
+	beat_on(2 * SCENE_S);
 	TEST_ASSERT_EQUAL_UINT32(stamp, giving_slot(&s.controllers[1], 1)->applied);
 }
 
@@ -292,7 +310,7 @@ static void test_a_text_is_withheld_and_comes_back_with_its_controller(void)
  */
 #define CLOCK "/27.000000000001/udate"
 
-static void a_clock(bool safe)
+static void set_clock(bool safe)
 {
 	struct config_item *item = scene_input(&s, "clock", CLOCK, OWS_DWORD);
 
@@ -307,8 +325,27 @@ static void a_clock(bool safe)
 	scene_set_by(&s, 1, 1, NEXT);
 	scene_run(&s, 200 * SCENE_MS);
 	TEST_ASSERT_EQUAL_STRING("30", scene_at(&s, CLOCK));
+}
+
+static void a_clock(bool safe)
+{
+	set_clock(safe);
 	restart_owsd();
 	scene_put(&s, CLOCK, "31", 0);
+}
+
+static const struct ows_command_slot *clock_slot(void)
+{
+	return giving_slot(&s.controllers[1], 1);
+}
+
+static void write_clock_once_more(const char *expected)
+{
+	scene_put(&s, CLOCK, "0", 0);
+	giving_slot(&s.controllers[1], 1)->one_shot++;
+	giving_mark(&s.controllers[1], 1);
+	beat_on(SCENE_S);
+	TEST_ASSERT_EQUAL_STRING(expected, scene_at(&s, CLOCK));
 }
 
 static void test_what_was_set_of_an_input_is_not_written_when_its_controller_comes_back(void)
@@ -327,6 +364,104 @@ static void test_what_was_set_of_an_input_is_not_written_when_its_controller_com
 	scene_set_by(&s, 1, 1, NEXT); /* the same number is another set */
 	beat_on(SCENE_S);
 	TEST_ASSERT_EQUAL_STRING("30", scene_at(&s, CLOCK));
+}
+
+static void test_a_set_of_an_input_that_was_written_is_applied_over_restarts(void)
+{
+	uint32_t stamp;
+
+	set_clock(false);
+	stamp = clock_slot()->stamp;
+	for (int i = 0; i < 2; i++) {
+		restart_owsd();
+		come_back();
+		beat_on(SCENE_S);
+		TEST_ASSERT_NULL(strstr(s.trace, "W "));
+		TEST_ASSERT_EQUAL_UINT32(stamp, clock_slot()->taken);
+		TEST_ASSERT_EQUAL_UINT32(stamp, clock_slot()->applied);
+		TEST_ASSERT_EQUAL_INT32(0, clock_slot()->err);
+		TEST_ASSERT_EQUAL_UINT(0, scene_sample(&s, 1).flags & OWS_SAMPLE_PENDING);
+		TEST_ASSERT_EQUAL_UINT32(0, scene_sample(&s, 1).confirmed);
+	}
+	restart_owsd(); /* while it is awaited */
+	restart_owsd();
+	come_back();
+	beat_on(SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(stamp, clock_slot()->applied);
+	write_clock_once_more("30");
+}
+
+/* Taken, and with the bus, when owsd is killed: the device may have it, and may not. */
+static void kill_before_the_clock_is_set(void)
+{
+	s.bus[0].latency_ns = 10 * SCENE_S;
+	giving_beat(&s.controllers[1], BEAT_MS);
+	scene_set_by(&s, 1, 1, OTHER);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT32(clock_slot()->stamp, clock_slot()->taken);
+	TEST_ASSERT_NOT_EQUAL_UINT32(clock_slot()->stamp, clock_slot()->applied);
+	s.bus[0].latency_ns = SCENE_MS;
+	restart_owsd();
+}
+
+static void test_a_set_of_an_input_that_was_not_written_is_refused_after_a_restart(void)
+{
+	uint32_t stamp;
+
+	set_clock(false);
+	stamp = clock_slot()->stamp + 1;
+	kill_before_the_clock_is_set();
+	come_back();
+	beat_on(5 * SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W "));
+	TEST_ASSERT_EQUAL_UINT32(stamp, clock_slot()->taken);
+	TEST_ASSERT_EQUAL_INT32(-ESTALE, clock_slot()->err);
+	TEST_ASSERT_EQUAL_UINT32(0, clock_slot()->applied);
+	TEST_ASSERT_EQUAL_UINT(0, scene_sample(&s, 1).flags & OWS_SAMPLE_PENDING);
+	TEST_ASSERT_EQUAL_UINT64(1, scene_counter(&s, "refused_commands"));
+	write_clock_once_more("40");
+	TEST_ASSERT_EQUAL_UINT32(0, clock_slot()->applied); /* the set stays refused */
+	restart_owsd();
+	come_back();
+	beat_on(SCENE_S);
+	TEST_ASSERT_EQUAL_UINT32(0, clock_slot()->applied);
+	scene_set_by(&s, 1, 1, OTHER); /* the same number is another set */
+	beat_on(SCENE_S);
+	TEST_ASSERT_EQUAL_STRING("40", scene_at(&s, CLOCK));
+	TEST_ASSERT_EQUAL_UINT32(clock_slot()->stamp, clock_slot()->applied);
+	TEST_ASSERT_EQUAL_INT32(0, clock_slot()->err);
+}
+
+static void test_a_text_of_an_input_that_was_written_is_not_written_again_but_set_again_is(void)
+{
+	struct config_item *item = scene_input(&s, "text", "/23.000000000001/memory", OWS_STRING);
+
+	item->writable = true;
+	scene_put(&s, item->path, "", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_join(&s, 1, 2);
+	giving_beat(&s.controllers[1], BEAT_MS);
+	giving_set_text(&s.controllers[1], 1, "boiler");
+	beat_on(SCENE_S);
+	restart_owsd();
+	come_back();
+	beat_on(SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W "));
+	giving_set_text(&s.controllers[1], 1, "boiler");
+	beat_on(SCENE_S);
+	TEST_ASSERT_NOT_NULL(strstr(s.trace, "W /23.000000000001/memory=boiler\n"));
+}
+
+static void test_the_controller_of_a_refused_set_of_an_input_leaves_safevalue(void)
+{
+	set_clock(true);
+	kill_before_the_clock_is_set();
+	come_back();
+	beat_on(SCENE_S);
+	TEST_ASSERT_NULL(strstr(s.trace, "W "));
+	scene_run(&s, 5 * SCENE_S); /* it hangs */
+	TEST_ASSERT_EQUAL_STRING("20", scene_at(&s, CLOCK));
 }
 
 static void test_of_an_input_nothing_is_written_when_its_controller_does_not_come_back(void)
@@ -419,6 +554,7 @@ int main(void)
 	RUN_TEST(test_a_controller_that_came_back_answers_for_its_outputs_again);
 	RUN_TEST(test_a_controller_that_came_back_and_never_beats_is_lost);
 	RUN_TEST(test_a_controller_that_came_back_gets_to_know_that_its_command_is_applied);
+	RUN_TEST(test_a_command_of_an_output_is_applied_anew_when_it_is_written_after_a_restart);
 	RUN_TEST(test_a_promise_is_known_as_soon_as_the_command_is_written);
 	RUN_TEST(test_a_longer_promise_is_waited_for);
 	RUN_TEST(test_a_promise_of_more_than_an_hour_is_one_of_an_hour);
@@ -434,6 +570,10 @@ int main(void)
 	RUN_TEST(test_a_one_shot_does_not_write_what_is_not_in_force);
 	RUN_TEST(test_a_text_is_withheld_and_comes_back_with_its_controller);
 	RUN_TEST(test_what_was_set_of_an_input_is_not_written_when_its_controller_comes_back);
+	RUN_TEST(test_a_set_of_an_input_that_was_written_is_applied_over_restarts);
+	RUN_TEST(test_a_set_of_an_input_that_was_not_written_is_refused_after_a_restart);
+	RUN_TEST(test_a_text_of_an_input_that_was_written_is_not_written_again_but_set_again_is);
+	RUN_TEST(test_the_controller_of_a_refused_set_of_an_input_leaves_safevalue);
 	RUN_TEST(test_of_an_input_nothing_is_written_when_its_controller_does_not_come_back);
 	RUN_TEST(test_an_input_gets_its_safevalue_once_when_its_controller_is_lost);
 	RUN_TEST(test_an_input_gets_its_safevalue_when_a_controller_that_came_back_is_lost);

@@ -78,8 +78,12 @@ static void test_at_first_no_command_is_in_force(void)
 
 static void test_what_was_put_is_found_by_name_path_and_type(void)
 {
-	const struct force_command number = {
-		.value = 5, .stamp = 9, .given = true, .safe = true, .controller = 3};
+	const struct force_command number = {.value = 5,
+	                                     .stamp = 9,
+	                                     .given = true,
+	                                     .safe = true,
+	                                     .applied = true,
+	                                     .controller = 3};
 	const struct force_command string = {.len = 6, .given = true, .controller = FORCE_NOBODY};
 	const struct force_signal other_type = {"valve", "/29.000000000001/PIO.0", OWS_BYTE};
 	const struct force_controller controller = program(77);
@@ -93,13 +97,14 @@ static void test_what_was_put_is_found_by_name_path_and_type(void)
 	force_put(&force, 2, &string, "boiler");
 	TEST_ASSERT_EQUAL_INT(0, force_open(memory, size, BOOT, &left));
 	TEST_ASSERT_TRUE(find(&left, 0, &c, text));
-	TEST_ASSERT_TRUE(c.given && c.safe);
+	TEST_ASSERT_TRUE(c.given && c.safe && c.applied);
 	TEST_ASSERT_EQUAL_INT64(5, c.value);
 	TEST_ASSERT_EQUAL_UINT32(9, c.stamp);
 	TEST_ASSERT_EQUAL_UINT32(3, c.controller);
 	TEST_ASSERT_TRUE(force_find_controller(&left, 3, &found));
 	TEST_ASSERT_EQUAL_MEMORY(&controller, &found, sizeof(found));
 	TEST_ASSERT_TRUE(find(&left, 2, &c, text));
+	TEST_ASSERT_FALSE(c.applied);
 	TEST_ASSERT_EQUAL_UINT32(6, c.len);
 	TEST_ASSERT_EQUAL_MEMORY("boiler", text, 6);
 	TEST_ASSERT_TRUE(find(&left, 3, &c, text));

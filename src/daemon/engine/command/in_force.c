@@ -3,10 +3,12 @@
  * Which command is in force: by a controller, or by owsd itself, which puts InitValue, SafeValue
  * and what was stored last (section 3 of docs/semantics.md, "A command is in force").
  */
+#include <errno.h>
 #include <string.h>
 
 #include "hal/base/time.h"
 #include "src/daemon/engine/command/in_force.h"
+#include "src/daemon/engine/command/intake.h"
 #include "src/daemon/engine/command/last.h"
 #include "src/daemon/engine/command/origin.h"
 #include "src/daemon/engine/publish.h"
@@ -47,6 +49,7 @@ static void remember_command(struct engine *e, const struct signal *s)
 		.stamp = c->stamp,
 		.given = given,
 		.safe = c->reason == OWS_REASON_SAFE,
+		.applied = c->said,
 		.controller = given ? c->controller : FORCE_NOBODY,
 	};
 
@@ -253,6 +256,7 @@ static void resume_signal(struct engine *e, struct signal *s, const struct force
 	} else if (controller != CONTROLLER_NOBODY) {
 		in_force_put_value(s, was.value, text, was.len);
 		s->command.awaited = true;
+		s->command.said = was.applied && !signal_repeats(s);
 		s->command.stamp = was.stamp;
 		s->command.reason = OWS_REASON_SET;
 		answer_for(e, s, controller);
@@ -344,23 +348,47 @@ void engine_hand_over(struct engine *e, uint32_t from, uint32_t to)
 	}
 }
 
+/*
+ * A set of an input of before the start was an event: owsd does not write it again, nor late. What
+ * the bus had not confirmed is refused: whether the device has it is not known.
+ */
+static int end_event(struct signal *s)
+{
+	struct signal_command *c = &s->command;
+
+	c->confirmed = c->lapsed = true;
+	c->written = c->value;
+	c->written_len = c->len;
+	if (signal_is_string(s))
+		memcpy(s->written_text, s->command_text, c->len);
+	return c->said ? 0 : -ESTALE;
+}
+
 void engine_come_back(struct engine *e, uint32_t to)
 {
-	const struct known_controller *g = &e->controllers[to];
+	struct known_controller *g = &e->controllers[to];
 	struct origin_before before = {.given = true, .changes = true};
 
 	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++) {
+		int err;
+
 		if (s->command.controller != to)
 			continue;
-		controller_taken(&g->as.memory, s->record, s->command.stamp, 0);
-		if (s->command.said)
+		err = s->command.awaited && !signal_repeats(s) ? end_event(s) : 0;
+		controller_taken(&g->as.memory, s->record, s->command.stamp, err);
+		if (err) {
+			engine_refuse(e, g, s, err);
+			s->command.stamp = 0; /* nor does the next owsd say that it is applied */
+			s->command.said = true;
+		} else if (s->command.said) {
 			controller_applied(&g->as.memory, s->record, s->command.stamp);
+		}
 		before.value = s->command.value;
 		s->command.reason = OWS_REASON_RETURNED;
 		engine_origin(e, s, OWS_REASON_RETURNED, &g->as.who, &before);
 		if (s->command.awaited)
 			store_last(e, s);
-		s->command.awaited &= !signal_repeats(s); /* else until the next set */
+		s->command.awaited = false;
 		remember_command(e, s);
 		engine_settle(e, s);
 		engine_write_check(e, s);
@@ -397,6 +425,8 @@ void engine_settle(struct engine *e, struct signal *s)
 	e->storing -= c->storing;
 	c->storing = false;
 	c->said = true;
+	if (!signal_repeats(s)) /* the next owsd has to know */
+		remember_command(e, s);
 	say_applied(e, s, c->controller,
 	            c->controller < OWS_CONTROLLERS ? e->controllers[c->controller].as.who.serial
 	                                            : 0,

@@ -23,8 +23,7 @@
 #define LOOKS_SPAN_NS NS_PER_S
 #define DEFER_NS (10 * NS_PER_MS)
 
-static void refuse_command(struct engine *e, struct known_controller *g, const struct signal *s,
-                           int err)
+void engine_refuse(struct engine *e, struct known_controller *g, const struct signal *s, int err)
 {
 	char others[LOG_OTHERS];
 	uint64_t n = log_rate(&e->refused, e->time.now_ns);
@@ -38,6 +37,7 @@ static void refuse_command(struct engine *e, struct known_controller *g, const s
 			err == -EROFS    ? "the signal is an input, and Writable is off"
 			: err == -EACCES ? "ControlAllow does not let it command the signal"
 			: err == -ERANGE ? "the type cannot hold it, or it is beyond Min and Max"
+			: err == -ESTALE ? "owsd ended before the bus had confirmed it"
 					 : "the text is damaged",
 			log_others(n, others));
 }
@@ -86,7 +86,7 @@ static void take_command(struct engine *e, uint32_t controller, struct signal *s
 	if (err == -EBUSY)
 		return;
 	if (err) {
-		refuse_command(e, g, s, err);
+		engine_refuse(e, g, s, err);
 	} else {
 		/* a promise may have come along with it: a kill finds both, or none */
 		engine_hear(e, controller);
