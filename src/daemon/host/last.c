@@ -179,9 +179,14 @@ static int make_stored_rows(struct last *l, const struct config *config)
 
 static int take_left(struct last *l, const char *data, size_t size)
 {
+	const struct config *config = l->setup.config;
 	struct force_left left;
 	int err = force_open(data, size, 0, &left);
 
+	for (unsigned i = 0; !err && i < config->item_count; i++)
+		force_keep(&left,
+		           &(struct force_signal){config->items[i].name, config->items[i].path,
+		                                  (uint8_t)config->items[i].type});
 	for (uint32_t row = 0; !err && row < l->put.row_count; row++) {
 		struct force_command c;
 		char text[VALUE_STRING_MAX];

@@ -248,16 +248,24 @@ void force_get(const struct force *force, uint32_t row, struct force_command *co
 struct force_key {
 	const char *name, *path;
 	uint32_t type, row;
+	bool kept;
 };
 
+static int compare_places(const void *a, const void *b)
+{
+	const struct force_key *x = a, *y = b;
+	int order = strcmp(x->path, y->path);
+
+	return order ? order : (x->type > y->type) - (x->type < y->type);
+}
+
+/* Names last: those of one place stand together. */
 static int compare_keys(const void *a, const void *b)
 {
 	const struct force_key *x = a, *y = b;
-	int order = strcmp(x->name, y->name);
+	int order = compare_places(x, y);
 
-	if (!order)
-		order = strcmp(x->path, y->path);
-	return order ? order : (x->type > y->type) - (x->type < y->type);
+	return order ? order : strcmp(x->name, y->name);
 }
 
 /* A string between off and end that is ended, and whole; NULL: it is not. */
@@ -353,16 +361,51 @@ void force_close(struct force_left *left)
 	*left = (struct force_left){0};
 }
 
+static struct force_key *find_key(const struct force_left *left, const struct force_signal *signal,
+                                  int (*compare)(const void *, const void *))
+{
+	const struct force_key wanted = {signal->name, signal->path, signal->type, 0, false};
+
+	return left->force.row_count ? bsearch(&wanted, left->keys, left->force.row_count,
+	                                       sizeof(wanted), compare)
+	                             : NULL;
+}
+
+void force_keep(const struct force_left *left, const struct force_signal *signal)
+{
+	struct force_key *key = find_key(left, signal, compare_keys);
+
+	if (key)
+		key->kept = true;
+}
+
+/* The one of this place that no signal keeps. */
+static const struct force_key *find_renamed(const struct force_left *left,
+                                            const struct force_signal *signal)
+{
+	const struct force_key *end = left->keys + left->force.row_count, *found = NULL;
+	const struct force_key *place = find_key(left, signal, compare_places), *key = place;
+
+	while (key && key > left->keys && !compare_places(key - 1, place))
+		key--;
+	for (; key && key < end && !compare_places(key, place); key++) {
+		if (key->kept)
+			continue;
+		if (found)
+			return NULL;
+		found = key;
+	}
+	return found;
+}
+
 bool force_find(const struct force_left *left, const struct force_signal *signal,
                 struct force_command *command, char *text, size_t room)
 {
-	const struct force_key wanted = {signal->name, signal->path, signal->type, 0};
-	const struct force_key *key = NULL;
+	const struct force_key *key = find_key(left, signal, compare_keys);
 	const struct force_row *r;
 
-	if (left->force.row_count)
-		key = bsearch(&wanted, left->keys, left->force.row_count, sizeof(*key),
-		              compare_keys);
+	if (!key)
+		key = find_renamed(left, signal);
 	if (!key)
 		return false;
 	r = row_at(&left->force, key->row);

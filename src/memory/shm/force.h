@@ -74,9 +74,12 @@ struct force_left {
  */
 int force_open(const void *memory, size_t size, uint64_t boot, struct force_left *left);
 void force_close(struct force_left *left);
+/* A signal of the configuration: what is left by its name, path and type is no other signal's. */
+void force_keep(const struct force_left *left, const struct force_signal *signal);
 /*
- * The command of a signal, and the text of a string (text has room bytes). False: there was no such
- * signal.
+ * The command of a signal, and the text of a string (text has room bytes). It is left by the name,
+ * path and type, else, for a renamed signal, by path and type alone, if that is one and not kept.
+ * False: there is none.
  */
 bool force_find(const struct force_left *left, const struct force_signal *signal,
                 struct force_command *command, char *text, size_t room);

@@ -492,6 +492,51 @@ static void test_an_input_gets_its_safevalue_when_a_controller_that_came_back_is
 	TEST_ASSERT_EQUAL_STRING("20", scene_at(&s, CLOCK));
 }
 
+/* --- Renamed outputs -------------------------------------------------------------------------- */
+
+static void test_an_output_that_was_renamed_over_a_restart_has_its_command(void)
+{
+	static const char *const names[OUTPUTS] = {"a", "b", "c", "d", "e", "f", "g", "h"};
+
+	controller_set_all(true);
+	for (unsigned i = 0; i < OUTPUTS; i++)
+		s.items[i].name = names[i];
+	restart_owsd();
+	scene_run(&s, SCENE_S);
+	expect_outputs(nothing);
+	come_back();
+	beat_on(SCENE_S);
+	expect_outputs(command);
+}
+
+static void test_outputs_that_swap_their_names_over_a_restart_keep_their_commands(void)
+{
+	const char *name;
+
+	controller_set_all(true);
+	scene_set_by(&s, 1, 1, OTHER);
+	beat_on(SCENE_S);
+	name = s.items[0].name;
+	s.items[0].name = s.items[1].name;
+	s.items[1].name = name;
+	restart_owsd();
+	come_back();
+	beat_on(SCENE_S);
+	expect_outputs((struct row){OTHER, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT, NEXT});
+}
+
+static void test_a_new_output_has_nothing_of_another_one_of_its_path(void)
+{
+	controller_set_all(true);
+	s.items[0].name = "new";
+	s.items[0].path = s.items[4].path;
+	restart_owsd();
+	come_back();
+	beat_on(SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_NONE, scene_origin(&s, 1).reason);
+	TEST_ASSERT_EQUAL_UINT(OWS_REASON_RETURNED, scene_origin(&s, 5).reason);
+}
+
 /* --- Superseded commands ---------------------------------------------------------------------- */
 
 static void test_a_superseded_command_does_not_come_back_with_its_controller(void)
@@ -577,6 +622,9 @@ int main(void)
 	RUN_TEST(test_of_an_input_nothing_is_written_when_its_controller_does_not_come_back);
 	RUN_TEST(test_an_input_gets_its_safevalue_once_when_its_controller_is_lost);
 	RUN_TEST(test_an_input_gets_its_safevalue_when_a_controller_that_came_back_is_lost);
+	RUN_TEST(test_an_output_that_was_renamed_over_a_restart_has_its_command);
+	RUN_TEST(test_outputs_that_swap_their_names_over_a_restart_keep_their_commands);
+	RUN_TEST(test_a_new_output_has_nothing_of_another_one_of_its_path);
 	RUN_TEST(test_a_superseded_command_does_not_come_back_with_its_controller);
 	RUN_TEST(test_a_superseded_controller_that_dies_leaves_the_outputs_as_they_are);
 	RUN_TEST(test_of_two_controllers_that_beat_the_one_in_force_comes_back);

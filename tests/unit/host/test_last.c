@@ -130,6 +130,51 @@ static void test_what_was_put_is_found_by_the_next_owsd(void)
 	last_free(last);
 }
 
+static void test_what_was_put_is_found_under_another_name(void)
+{
+	static const char *const names[ITEMS] = {"tap", "other", "height", "label"};
+	const char *before[ITEMS];
+	struct last *last;
+
+	store_all();
+	for (unsigned i = 0; i < ITEMS; i++) {
+		before[i] = items[i].name;
+		items[i].name = names[i];
+	}
+	last = make();
+	for (unsigned i = 0; i < ITEMS; i++)
+		items[i].name = before[i];
+	expect_all(last_seam(last));
+	last_free(last);
+}
+
+/* What was of one that is still there is nobody else's. */
+static void test_a_new_output_has_nothing_of_another_one_of_its_path(void)
+{
+	struct config_item both[] = {items[0], items[0]};
+	const struct config two = {.items = both, .item_count = 2};
+	const struct last_setup setup = {.instance = "T", .config = &two, .ring = ring};
+	char text[VALUE_STRING_MAX];
+	struct last *last;
+	const struct engine_last *seam;
+	int64_t value;
+	uint32_t len;
+
+	store_all();
+	both[0].name = "new";
+	both[1].starts_last = false;
+	TEST_ASSERT_EQUAL_INT(0, last_make(&setup, &last));
+	seam = last_seam(last);
+	TEST_ASSERT_FALSE(seam->find(seam->ctx, 0, &value, text, sizeof(text), &len));
+	last_free(last);
+	both[1].starts_last = true;
+	TEST_ASSERT_EQUAL_INT(0, last_make(&setup, &last));
+	seam = last_seam(last);
+	TEST_ASSERT_FALSE(seam->find(seam->ctx, 0, &value, text, sizeof(text), &len));
+	TEST_ASSERT_TRUE(seam->find(seam->ctx, 1, &value, text, sizeof(text), &len));
+	last_free(last);
+}
+
 static void test_nothing_is_found_at_first_and_of_outputs_that_are_not_last(void)
 {
 	struct config none = {.items = &items[1], .item_count = 1};
@@ -318,6 +363,8 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_what_was_put_is_found_by_the_next_owsd);
+	RUN_TEST(test_what_was_put_is_found_under_another_name);
+	RUN_TEST(test_a_new_output_has_nothing_of_another_one_of_its_path);
 	RUN_TEST(test_nothing_is_found_at_first_and_of_outputs_that_are_not_last);
 	RUN_TEST(test_a_ticket_is_reached_when_the_file_stands_and_the_engine_is_rung);
 	RUN_TEST(test_many_changes_are_stored_at_once_and_no_more_than_once_a_second);

@@ -113,6 +113,72 @@ static void test_what_was_put_is_found_by_name_path_and_type(void)
 	force_close(&left);
 }
 
+/* What a configuration has in the place of "level" and of one "valve". */
+static const struct force_signal renamed[] = {
+	{"height", "/2C.000000000002/wiper", OWS_DOUBLE},
+	{"tap", "/29.000000000001/PIO.0", OWS_BOOL},
+};
+
+static void test_a_signal_that_was_renamed_has_what_its_old_name_left(void)
+{
+	const struct force_signal other_type = {"height", "/2C.000000000002/wiper", OWS_FLOAT};
+	struct force_command c = {.value = 5, .given = true, .controller = FORCE_NOBODY};
+	struct force_left left;
+	char text[TEXT_CAP];
+
+	force_put(&force, 1, &c, NULL);
+	TEST_ASSERT_EQUAL_INT(0, force_open(memory, size, BOOT, &left));
+	force_keep(&left, &signals[0]);
+	force_keep(&left, &renamed[0]); /* nobody left anything by that name */
+	TEST_ASSERT_FALSE(force_find(&left, &other_type, &c, text, sizeof(text)));
+	TEST_ASSERT_TRUE(force_find(&left, &renamed[0], &c, text, sizeof(text)));
+	TEST_ASSERT_TRUE(c.given);
+	TEST_ASSERT_EQUAL_INT64(5, c.value);
+	force_close(&left);
+}
+
+static void test_a_new_signal_has_nothing_of_one_that_is_still_there(void)
+{
+	struct force_command c;
+	struct force_left left;
+	char text[TEXT_CAP];
+
+	TEST_ASSERT_EQUAL_INT(0, force_open(memory, size, BOOT, &left));
+	for (unsigned i = 0; i < SIGNALS; i++)
+		force_keep(&left, &signals[i]);
+	TEST_ASSERT_FALSE(force_find(&left, &renamed[0], &c, text, sizeof(text)));
+	TEST_ASSERT_FALSE(force_find(&left, &renamed[1], &c, text, sizeof(text)));
+	force_close(&left);
+}
+
+static void test_of_two_that_may_have_been_renamed_none_is_taken(void)
+{
+	const struct force_signal three[] = {
+		{"a", "/29.000000000001/PIO.0", OWS_BOOL},
+		{"b", "/29.000000000001/PIO.0", OWS_BOOL},
+		{"c", "/29.000000000001/PIO.0", OWS_BOOL},
+	};
+	const struct force_plan doubled = {three, 3, TEXT_CAP, BOOT};
+	struct force_command c = {.given = true, .controller = FORCE_NOBODY};
+	char *file = calloc(1, force_size(&doubled)), text[TEXT_CAP];
+	struct force_left left;
+	struct force of;
+
+	force_build(&doubled, file, &of);
+	for (uint32_t i = 0; i < 3; i++) {
+		c.value = i;
+		force_put(&of, i, &c, NULL);
+	}
+	TEST_ASSERT_EQUAL_INT(0, force_open(file, force_size(&doubled), BOOT, &left));
+	force_keep(&left, &three[1]);
+	TEST_ASSERT_FALSE(force_find(&left, &renamed[1], &c, text, sizeof(text)));
+	force_keep(&left, &three[0]);
+	TEST_ASSERT_TRUE(force_find(&left, &renamed[1], &c, text, sizeof(text)));
+	TEST_ASSERT_EQUAL_INT64(2, c.value);
+	force_close(&left);
+	free(file);
+}
+
 static void test_a_command_does_not_fall_to_the_next_controller_of_the_index(void)
 {
 	const struct force_command command = {.value = 1, .given = true, .controller = 3};
@@ -258,6 +324,8 @@ static void test_ten_thousand_signals_are_found_in_the_steps_of_a_sort(void)
 	}
 	compared = 0;
 	TEST_ASSERT_EQUAL_INT(0, force_open(file, force_size(&big), BOOT, &left));
+	for (unsigned i = MANY; i-- > 0;)
+		force_keep(&left, &many[i]);
 	for (unsigned i = MANY; i-- > 0;) {
 		TEST_ASSERT_TRUE(force_find(&left, &many[i], &c, text, sizeof(text)));
 		TEST_ASSERT_EQUAL_INT64(i, c.value);
@@ -278,6 +346,9 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_at_first_no_command_is_in_force);
 	RUN_TEST(test_what_was_put_is_found_by_name_path_and_type);
+	RUN_TEST(test_a_signal_that_was_renamed_has_what_its_old_name_left);
+	RUN_TEST(test_a_new_signal_has_nothing_of_one_that_is_still_there);
+	RUN_TEST(test_of_two_that_may_have_been_renamed_none_is_taken);
 	RUN_TEST(test_a_command_does_not_fall_to_the_next_controller_of_the_index);
 	RUN_TEST(test_a_kill_at_any_moment_leaves_the_old_or_the_new_command);
 	RUN_TEST(test_what_another_boot_left_is_not_in_force);

@@ -235,10 +235,15 @@ static uint32_t in_force_await(struct engine *e, const struct force_left *left, 
 	return at;
 }
 
+static struct force_signal force_key(const struct signal *s)
+{
+	return (struct force_signal){s->item->name, s->item->path, (uint8_t)s->item->type};
+}
+
 static void resume_signal(struct engine *e, struct signal *s, const struct force_left *left,
                           uint32_t *awaited)
 {
-	const struct force_signal key = {s->item->name, s->item->path, (uint8_t)s->item->type};
+	const struct force_signal key = force_key(s);
 	char text[TABLE_TEXT_CAP];
 	struct force_command was = {0};
 	uint32_t controller = CONTROLLER_NOBODY;
@@ -272,8 +277,13 @@ void engine_resume(struct engine *e, const struct force_left *left)
 	/* where each controller of before is awaited, + 1 */
 	uint32_t awaited[FORCE_CONTROLLERS] = {0};
 
-	for (uint32_t row = 0; row < e->table.count; row++)
-		resume_signal(e, &e->table.signals[row], left, awaited);
+	for (struct signal *s = e->table.signals; left && s < table_end(&e->table); s++) {
+		const struct force_signal key = force_key(s);
+
+		force_keep(left, &key);
+	}
+	for (struct signal *s = e->table.signals; s < table_end(&e->table); s++)
+		resume_signal(e, s, left, awaited);
 }
 
 /* --- A controller is lost, or comes back ------------------------------------------------------ */
