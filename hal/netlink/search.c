@@ -6,6 +6,10 @@
  * All devices are looked for by the kernel's own search, which takes one request, but not those in
  * alarm: its conditional search goes on for 64 rounds when none is (as many as
  * w1_master_max_slave_count says), and counts the silent ones as gone.
+ *
+ * Only of a chip whose latch tells is the end of the id left unread: for an unknown one that begins
+ * so, the latch is clear. A thermometer has none: to be found is its alarm, and its id is read
+ * whole, with the checksum, once somebody has answered.
  */
 #include <errno.h>
 #include <string.h>
@@ -23,6 +27,7 @@
 struct prefix {
 	uint8_t rom[8];
 	unsigned bits;
+	bool answered; /* by one that begins so */
 };
 
 struct walk {
@@ -143,6 +148,7 @@ static void look_later(struct walk *walk, const uint8_t path[8], unsigned i, uns
 	memcpy(prefix->rom, path, sizeof(prefix->rom));
 	set_bit(prefix->rom, i, value);
 	prefix->bits = i + 1;
+	prefix->answered = true;
 }
 
 /* One request: along a guess that begins with prefix. 0, what found returned, or an error. */
@@ -152,7 +158,8 @@ static int search_look(struct walk *walk, const struct prefix *prefix)
 	const uint8_t *known = guess_known(walk, prefix, &own);
 	uint8_t path[8], slots[25];
 	unsigned bits = own > prefix->bits + 1 ? own : prefix->bits + 1;
-	unsigned n = known && walk->full ? 8 : (bits + 7) / 8;
+	bool latches = known && family_of(known[0])->latches;
+	unsigned n = known && (walk->full || (prefix->answered && !latches)) ? 8 : (bits + 7) / 8;
 
 	memcpy(path, known ? known : prefix->rom, sizeof(path));
 	for (unsigned i = prefix->bits; !known && i < 64; i++)
@@ -164,8 +171,9 @@ static int search_look(struct walk *walk, const struct prefix *prefix)
 	for (unsigned i = 0; i < 8 * n; i++) {
 		unsigned there = wire_at(slots, i), mine = bit_of(path, i);
 
+		/* A slot was disturbed where one had answered before. */
 		if (there == 3 || (there < 2 && there != mine && i < prefix->bits))
-			return 0;
+			return prefix->answered || (there == 3 && i) ? -EBADMSG : 0;
 		if (there == 2 && i >= prefix->bits)
 			look_later(walk, path, i, !mine);
 		if (there < 2 && there != mine) {
@@ -173,7 +181,7 @@ static int search_look(struct walk *walk, const struct prefix *prefix)
 			return 0;
 		}
 	}
-	if (!known && n < 8) {
+	if (n < 8 && !latches) {
 		look_later(walk, path, 8 * n - 1, bit_of(path, 8 * n - 1));
 		return 0;
 	}

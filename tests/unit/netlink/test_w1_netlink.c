@@ -310,6 +310,78 @@ static void test_an_unknown_device_in_alarm_is_found_and_read(void)
 	nl_lists("/alarm", expected);
 }
 
+/* So often that each search in a row is made, whole and not. */
+#define SEARCHES 40
+
+static void list_alarms(const char *where, const char *list)
+{
+	for (unsigned i = 0; i < SEARCHES; i++)
+		nl_lists(where, list);
+}
+
+/* A thermometer at 20 degrees, with limits that it keeps. */
+static struct sim_slave *calm(unsigned id)
+{
+	return nl_thermometer(0, id, 20);
+}
+
+static void convert_all(const struct sim_slave *slave)
+{
+	TEST_ASSERT_EQUAL_INT(0, nl_write(slave, "temphigh", "30"));
+	TEST_ASSERT_EQUAL_INT(0, nl_write(slave, "templow", "10"));
+	nl_reads(slave, "temperature", "          20");
+}
+
+/* To be in the search is their alarm: no other chip makes it. */
+static void test_no_thermometer_is_in_alarm_for_one_that_is_new(void)
+{
+	for (unsigned id = 2; id < 6; id++) {
+		char list[100], name[ROM_TEXT_MAX];
+
+		nl_masters(1);
+		struct sim_slave *old = calm(1);
+		nl_start();
+		convert_all(old);
+		struct sim_slave *new = nl_thermometer(0, id << 8 | 1, 90);
+		rom_print(new->rom, ROM_F_I, name);
+		TEST_ASSERT_EQUAL_INT(0, nl_ask(BUS_WRITE, "/simultaneous/temperature", "1")->err);
+		host_run(&nl.host, nl.bus, nl.host.now + 800 * HOST_MS);
+		snprintf(list, sizeof(list), "/alarm/%s\n", name);
+		list_alarms(id & 1 ? "/alarm" : "/alarm/28", list);
+		tearDown();
+		setUp();
+	}
+}
+
+/* One turned slot neither makes an alarm nor ends one. */
+static void test_no_turned_slot_changes_who_is_in_alarm(void)
+{
+	static struct trouble trouble;
+	char list[100], name[ROM_TEXT_MAX];
+
+	nl_masters(1);
+	wire_net.trouble = &trouble;
+	trouble_none(&trouble);
+	struct sim_slave *slave = calm(1);
+	nl_start();
+	convert_all(slave);
+	rom_print(slave->rom, ROM_F_I, name);
+	for (unsigned hot = 0; hot < 2; hot++) {
+		if (hot)
+			TEST_ASSERT_EQUAL_INT(0, nl_write(slave, "temphigh", "15"));
+		nl_reads(slave, "temperature", "          20");
+		snprintf(list, sizeof(list), hot ? "/alarm/%s\n" : "", name);
+		for (uint32_t at = 8; at < 8 + 3 * 64; at++) {
+			trouble_none(&trouble);
+			trouble.kind = TROUBLE_TURN;
+			trouble.at = at;
+			trouble.mask = 1;
+			nl_lists("/alarm/28", list);
+		}
+		trouble_none(&trouble);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -326,5 +398,7 @@ int main(void)
 	RUN_TEST(test_nobody_in_alarm_costs_one_short_request);
 	RUN_TEST(test_random_alarms_are_all_found);
 	RUN_TEST(test_an_unknown_device_in_alarm_is_found_and_read);
+	RUN_TEST(test_no_thermometer_is_in_alarm_for_one_that_is_new);
+	RUN_TEST(test_no_turned_slot_changes_who_is_in_alarm);
 	return UNITY_END();
 }
