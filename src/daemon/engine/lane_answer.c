@@ -130,7 +130,7 @@ void lane_answer(struct lane *lane, const struct bus_answer *answer)
 		if (slot->purpose == FOR_GUEST)
 			guest_gone(e, slot);
 		else if (lane_writes_output(lane, slot))
-			engine_doubt_ended(e, slot);
+			engine_doubt_ended(e, slot, answer->err);
 	}
 	if (lane->state.stuck)
 		lane_unstuck(lane);

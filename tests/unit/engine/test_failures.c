@@ -597,6 +597,100 @@ static void test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_valu
 	TEST_ASSERT_EQUAL_STRING("W " PIO "=1\nW " PIO "=2\n", s.trace);
 }
 
+/* A set of an input was an event: late or not, it was one. */
+static void an_input_in_doubt(void)
+{
+	scene_input(&s, "in", PIO, OWS_BYTE)->writable = true;
+	scene_put(&s, PIO, "0", 0);
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	s.bus[0].mute = true;
+	scene_set(&s, 1, 1);
+	scene_run(&s, 21 * SCENE_S);
+	s.bus[0].mute = false;
+}
+
+/* Of the requests that were swallowed these are answered. */
+static void answer_swallowed(enum bus_op op, int err)
+{
+	unsigned n = s.bus[0].swallowed_count;
+
+	s.bus[0].swallowed_count = 0;
+	for (unsigned i = 0; i < n; i++) {
+		struct bus_req *req = s.bus[0].swallowed[i];
+
+		if (req->op == op)
+			scene_answer(&s, req->id, err, NULL, req);
+		else
+			s.bus[0].swallowed[s.bus[0].swallowed_count++] = req;
+	}
+}
+
+static void answer_late(int err)
+{
+	answer_swallowed(BUS_READ, -EIO);
+	answer_swallowed(BUS_WRITE, err);
+	scene_run(&s, 10 * SCENE_S);
+}
+
+static void test_a_set_of_an_input_that_ends_late_is_not_repeated(void)
+{
+	an_input_in_doubt();
+	answer_late(0);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	TEST_ASSERT_EQUAL_INT32(0, scene_sample(&s, 1).err);
+	TEST_ASSERT_EQUAL_UINT(1, scene_sample(&s, 1).confirmed);
+	scene_set(&s, 1, 2);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(2, s.writes);
+}
+
+/* Its target answers others, so it was tried again, and done. */
+static void test_a_set_of_an_input_that_was_done_meanwhile_is_not_repeated(void)
+{
+	unsigned writes;
+
+	scene_input(&s, "in", PIO, OWS_BYTE)->writable = true;
+	scene_input(&s, "t1", T1, OWS_DOUBLE);
+	scene_put(&s, PIO, "0", 0);
+	scene_put(&s, T1, "21.5", 0);
+	s.bus[0].depth = 2;
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, SCENE_S);
+	s.bus[0].mute = true;
+	scene_set(&s, 1, 1);
+	scene_run(&s, 100 * SCENE_MS);
+	s.bus[0].mute = false;
+	answer_swallowed(BUS_READ, -EIO);
+	scene_run(&s, 120 * SCENE_S);
+	writes = s.writes;
+	TEST_ASSERT_EQUAL_UINT(2, writes);
+	answer_late(0);
+	TEST_ASSERT_EQUAL_UINT(writes, s.writes);
+	/* which of both came last is not known: the next one counts, the same value too */
+	scene_set(&s, 1, 1);
+	scene_run(&s, SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(writes + 1, s.writes);
+}
+
+static void test_a_set_of_an_input_that_failed_late_is_tried_again(void)
+{
+	an_input_in_doubt();
+	answer_late(-EIO);
+	TEST_ASSERT_EQUAL_UINT(2, s.writes);
+}
+
+static void test_a_newer_set_of_an_input_follows_one_in_doubt(void)
+{
+	an_input_in_doubt();
+	scene_set(&s, 1, 2);
+	answer_late(0);
+	TEST_ASSERT_EQUAL_UINT(2, s.writes);
+	TEST_ASSERT_EQUAL_STRING("2", scene_at(&s, PIO));
+}
+
 static void test_answers_that_nobody_asked_for_are_counted_and_ignored(void)
 {
 	unsigned seed = 4711;
@@ -672,6 +766,10 @@ int main(void)
 	RUN_TEST(test_a_target_that_hangs_is_shown_as_down_until_it_answers);
 	RUN_TEST(test_a_timeout_shorter_than_the_period_is_kept);
 	RUN_TEST(test_a_write_in_doubt_that_ends_late_is_followed_by_the_present_value);
+	RUN_TEST(test_a_set_of_an_input_that_ends_late_is_not_repeated);
+	RUN_TEST(test_a_set_of_an_input_that_was_done_meanwhile_is_not_repeated);
+	RUN_TEST(test_a_set_of_an_input_that_failed_late_is_tried_again);
+	RUN_TEST(test_a_newer_set_of_an_input_follows_one_in_doubt);
 	RUN_TEST(test_answers_that_nobody_asked_for_are_counted_and_ignored);
 	RUN_TEST(test_a_second_answer_to_one_request_changes_nothing);
 	RUN_TEST(test_with_max_retries_0_the_first_error_is_bad);

@@ -12,6 +12,7 @@
 
 #include "src/daemon/engine/alarm/alarm_effect.h"
 #include "src/daemon/engine/alarm/alarm_item.h"
+#include "src/daemon/engine/command/in_force.h"
 #include "src/daemon/engine/due.h"
 #include "src/daemon/engine/lane.h"
 #include "src/daemon/engine/presence.h"
@@ -70,11 +71,31 @@ void engine_doubts(struct engine *e)
 			look_at_lent(&e->lanes[i], (enum doubt_round)round);
 }
 
-void engine_doubt_ended(struct engine *e, const struct slot *slot)
+/* A set of an input was an event: done late it is done, and nothing follows it but a newer set. */
+static void set_was_done(struct engine *e, struct signal *s, const struct slot *slot)
+{
+	s->command.confirmed = true;
+	s->command.written = slot->value;
+	if (signal_is_string(s)) {
+		memcpy(s->written_text, slot->data, slot->req.len);
+		s->command.written_len = slot->req.len;
+	}
+	s->command.err = 0;
+	engine_settle_earlier(e, s, slot);
+	engine_settle(e, s);
+	engine_read_now(e, s);
+}
+
+void engine_doubt_ended(struct engine *e, const struct slot *slot, int err)
 {
 	struct signal *s = &e->table.signals[slot->row];
 
-	s->command.forced = true;
+	if (signal_repeats(s))
+		s->command.forced = true;
+	else if (err || s->command.confirmed)
+		signal_forget_written(s);
+	else
+		set_was_done(e, s, slot);
 	s->doubts = 0; /* but for what is still lent */
 	engine_doubts(e);
 	engine_write_check(e, s);

@@ -9,10 +9,10 @@ bool lane_writes_output(const struct lane *lane, const struct slot *slot);
 /* Writes in doubt ended, or their bus let go: count them anew, and write what waited for that. */
 void engine_doubts(struct engine *e);
 /*
- * The late end of a write. It may have reached the device after the engine moved on: the present
- * value is written again.
+ * The late end of a write, well or with err. It may have reached the device after the engine moved
+ * on: the present value of an output is written again.
  */
-void engine_doubt_ended(struct engine *e, const struct slot *slot);
+void engine_doubt_ended(struct engine *e, const struct slot *slot, int err);
 
 /* All signals of the device, TABLE_NO_DEVICE's too (devices[device_count]). */
 void engine_move_device(struct engine *e, struct device *device, struct lane *to, const char *why);
