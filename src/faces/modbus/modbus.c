@@ -196,6 +196,35 @@ static bool place_signal(struct modbus *m, int signal)
 	return true;
 }
 
+/*
+ * The map belongs to one program alone; -EBUSY: to another one. A directory that is not there yet is
+ * locked when the map is read or written in it.
+ */
+static int lock_map(struct modbus *m)
+{
+	char directory[sizeof(m->path)];
+
+	if (m->lock >= 0 || !*m->path || history_make_above(m->path))
+		return 0;
+	memcpy(directory, m->path, sizeof(directory));
+	*strrchr(directory, '/') = '\0';
+	m->lock = history_lock(directory);
+	return m->lock == -EBUSY ? m->lock : 0;
+}
+
+static bool is_ours(struct modbus *m)
+{
+	int err = lock_map(m);
+
+	if (err && err != m->told)
+		log_err(m->face->log,
+		        "the map %s is kept by another owsd-modbus: no signal is served until that "
+		        "has ended",
+		        m->path);
+	m->told = err ? err : m->told;
+	return !err;
+}
+
 /* False: what is in the file is not known. */
 static bool read_map(struct modbus *m, const char *path)
 {
@@ -246,7 +275,7 @@ static void make_places(struct modbus *m)
 	m->again_ns = ows_now() + AGAIN_NS;
 	m->map = (struct map){0};
 	m->signals = 0;
-	m->known = !options->given || ((!fixed || read_map(m, fixed)) &&
+	m->known = !options->given || (is_ours(m) && (!fixed || read_map(m, fixed)) &&
 	                               (!*m->path || read_map(m, m->path) || unkept));
 	if (!m->known)
 		map_free(&m->map);
@@ -286,22 +315,6 @@ static void try_again(struct modbus *m, int64_t now_ns)
 	m->told = 0;
 	log_notice(m->face->log, "the map %s is read and written: %u signals are served", m->path,
 	           m->signals);
-}
-
-/* The map belongs to one program alone. */
-static int lock_map(struct modbus *m)
-{
-	char directory[sizeof(m->path)];
-
-	m->lock = -1;
-	if (map_path(m->face->arguments->instance, m->path))
-		m->path[0] = '\0';
-	if (!*m->path || history_make_above(m->path))
-		return 0;
-	memcpy(directory, m->path, sizeof(directory));
-	*strrchr(directory, '/') = '\0';
-	m->lock = history_lock(directory);
-	return m->lock == -EBUSY ? m->lock : 0;
 }
 
 /* --- Of the face ----------------------------------------------------------------------------- */
@@ -358,6 +371,9 @@ int modbus_open(struct face *face)
 	m->clients.face = m->writing.face = face;
 	m->clients.answer = answer;
 	face->pace_ns = PACE_NS;
+	m->lock = -1;
+	if (map_path(face->arguments->instance, m->path))
+		m->path[0] = '\0';
 	if (lock_map(m)) {
 		face_complain(face->ops->program, "another owsd-modbus serves %s: end it first",
 		              face->arguments->instance);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of the places of signals over a map that cannot be read or written for a while. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -163,7 +164,41 @@ static void test_a_directory_that_comes_late_with_its_map_gives_the_places(void)
 	some_time_later();
 	TEST_ASSERT_EQUAL_STRING("", trouble());
 	TEST_ASSERT_EQUAL_UINT(7, map_known(&m->map, "/28.1/t"));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, history_lock(late));
 	unlink(map);
+	snprintf(map, sizeof(map), "%s/lock", late);
+	unlink(map);
+	rmdir(late);
+}
+
+/* It has the addresses: nobody else gives others, until it has ended. */
+static void test_a_late_directory_of_another_program_is_left_to_it(void)
+{
+	char late[64], file[72];
+	struct modbus *m;
+	FILE *out;
+	int lock;
+
+	snprintf(late, sizeof(late), "%s/late", folder);
+	setenv("STATE_DIRECTORY", late, 1);
+	out = fopen(late, "w");
+	TEST_ASSERT_TRUE(out && fclose(out) == 0);
+	find_owsd();
+	m = face.own;
+	unlink(late);
+	TEST_ASSERT_EQUAL_INT(0, mkdir(late, 0700));
+	lock = history_lock(late);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, lock);
+	some_time_later();
+	snprintf(file, sizeof(file), "%s/map", late);
+	TEST_ASSERT_NOT_EQUAL_INT(0, access(file, F_OK));
+	TEST_ASSERT_EQUAL_UINT(0, m->signals);
+	close(lock);
+	some_time_later();
+	TEST_ASSERT_EQUAL_INT(0, unlink(file));
+	TEST_ASSERT_EQUAL_UINT(2, m->signals);
+	snprintf(file, sizeof(file), "%s/lock", late);
+	unlink(file);
 	rmdir(late);
 }
 
@@ -174,5 +209,6 @@ int main(void)
 	RUN_TEST(test_a_map_that_can_be_written_again_is);
 	RUN_TEST(test_a_place_that_was_not_written_yet_stays_over_a_reload);
 	RUN_TEST(test_a_directory_that_comes_late_with_its_map_gives_the_places);
+	RUN_TEST(test_a_late_directory_of_another_program_is_left_to_it);
 	return UNITY_END();
 }
