@@ -104,7 +104,11 @@ static void add_value(struct past *p, struct row *row, struct replay_row *r)
 {
 	struct past_value *value = &p->values[p->value_count++];
 
-	*value = (struct past_value){.row = row, .wall_us = r->wall_us, .v = r->v, .text = r->text};
+	*value = (struct past_value){.row = row,
+	                             .wall_us = r->wall_us,
+	                             .here = r->at.boot == p->missed.boot,
+	                             .v = r->v,
+	                             .text = r->text};
 	/* who keeps values by their milliseconds keeps all of a burst, in their order */
 	if (value->wall_us < row->past_us + US_PER_MS && value->wall_us > row->past_us - US_PER_S)
 		value->wall_us = row->past_us + US_PER_MS;
@@ -176,6 +180,7 @@ static void read_batch(struct past *p, int64_t now_ns)
 	int count = p->stream->count, most = count > BATCH ? count : BATCH, n;
 	int stretches = p->missed.count;
 
+	p->offset_us = missed_point(&p->missed, 0).wall_us;
 	p->values = calloc((size_t)most, sizeof(*p->values));
 	n = p->values ? missed_read(&p->missed, count, rows, BATCH, now_ns) : 0;
 	if (n) {
@@ -191,8 +196,19 @@ static void read_batch(struct past *p, int64_t now_ns)
 		let_die(p);
 }
 
+/* The clock may have been set while they waited. */
+static void date_anew(struct past *p)
+{
+	int64_t by_us = missed_point(&p->missed, 0).wall_us - p->offset_us;
+
+	p->offset_us += by_us;
+	for (int i = p->put; i < p->value_count; i++)
+		p->values[i].wall_us += p->values[i].here ? by_us : 0;
+}
+
 static bool put_batch(struct past *p)
 {
+	date_anew(p);
 	while (p->put < p->value_count) {
 		const struct past_value *first = &p->values[p->put];
 		int n = 1;

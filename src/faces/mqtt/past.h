@@ -26,6 +26,7 @@ struct past {
 	uint64_t mark_published;
 	struct past_value *values; /* under way, by chip */
 	int value_count, put;
+	int64_t offset_us;        /* of the clock, by which they have their times */
 	bool read;                /* a batch is under way: it may have no values */
 	struct replay_point last; /* its last row */
 };

@@ -56,6 +56,7 @@ struct row {
 struct past_value {
 	struct row *row;
 	int64_t wall_us; /* since 1970 */
+	bool here;       /* in this boot: it moves with the clock */
 	struct ows_value v;
 	char *text; /* of a string */
 	int place;  /* in their order */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -39,6 +40,19 @@ static int64_t wall_us;  /* of the last of them */
 static bool orderly;     /* each is a millisecond behind the one before it, at least */
 static int64_t now_ns, start_ns;
 
+static bool full;    /* the connection takes nothing */
+static time_t set_s; /* somebody has set the clock by so much */
+
+/* In place of the library's. */
+int clock_gettime(clockid_t clock, struct timespec *at)
+{
+	int err = (int)syscall(SYS_clock_gettime, clock, at);
+
+	if (clock == CLOCK_REALTIME)
+		at->tv_sec += set_s;
+	return err;
+}
+
 /* In place of the broker's: it answers when the test says so. */
 bool broker_mark(struct broker *b)
 {
@@ -54,6 +68,8 @@ static bool send_past(struct stream *s, const struct past_value *values, int n)
 	size_t at = strlen(again);
 
 	(void)s;
+	if (full)
+		return false;
 	for (int i = 0; i < n; i++, at = strlen(again)) {
 		snprintf(again + at, sizeof(again) - at, "%s=%g ", values[i].row->name,
 		         ows_good(values[i].v.quality) ? values[i].v.number : -1);
@@ -146,6 +162,8 @@ void setUp(void)
 	broker = (struct broker){0};
 	writer = NULL;
 	again[0] = '\0';
+	full = false;
+	set_s = 0;
 	start_ns = now_ns = ows_now();
 	face.looked_ns = now_ns;
 }
@@ -181,6 +199,34 @@ static void test_what_was_recorded_while_the_broker_was_away_goes_out_again(void
 	again[0] = '\0';
 	pump(20);
 	TEST_ASSERT_EQUAL_STRING("", again);
+}
+
+static void test_a_batch_that_waits_goes_by_the_clock_that_is_set_meanwhile(void)
+{
+	int64_t away_ns;
+
+	record();
+	room(now_ns, 20);
+	written(now_ns + S);
+	begin();
+	settle();
+	again[0] = '\0';
+	away_ns = now_ns;
+	past_lost(&past);
+	room(away_ns + 20 * S, 21);
+	now_ns = away_ns + 60 * S;
+	full = true;
+	pump(1);
+	history_writer_value(writer, LAMP, now_ns, OWS_Q_GOOD, 1, NULL, 0);
+	written(now_ns);
+	pump(40);
+	TEST_ASSERT_TRUE(past.read);
+	TEST_ASSERT_EQUAL_STRING("", again);
+	set_s = 7200;
+	full = false;
+	pump(40);
+	TEST_ASSERT_EQUAL_STRING("room=21 ", again);
+	TEST_ASSERT_INT64_WITHIN(2000000, (away_ns + 20 * S + offset()) / 1000, wall_us);
 }
 
 /* A file of version 3, before the recorder has found its signals in it. */
@@ -416,6 +462,7 @@ int main(void)
 	RUN_TEST(test_rows_without_an_identity_are_of_the_signal_of_their_name);
 	RUN_TEST(test_a_burst_keeps_its_order_by_the_millisecond);
 	RUN_TEST(test_what_the_recorder_has_not_written_yet_is_waited_for);
+	RUN_TEST(test_a_batch_that_waits_goes_by_the_clock_that_is_set_meanwhile);
 	RUN_TEST(test_without_a_right_clock_or_a_birth_nothing_goes_out);
 	RUN_TEST(test_a_profile_that_shows_only_what_is_does_nothing);
 	RUN_TEST(test_up_to_where_the_broker_has_all_is_kept_over_a_restart);
