@@ -82,7 +82,7 @@ void missed_keep(struct missed *m, int64_t least_ns, int64_t now_ns)
 	if (least_ns && now_ns - m->kept_ns < least_ns)
 		return;
 	m->kept_ns = now_ns;
-	if (!m->there || !*m->path)
+	if (!m->there || !*m->path || m->unread)
 		return;
 	snprintf(part, sizeof(part), "%s.part", m->path);
 	bad = history_make_above(part);
@@ -149,7 +149,7 @@ void missed_keep_number(struct missed *m, int number)
 		complain(m, path, errno);
 }
 
-/* False: there is none, of another peer, or damaged. */
+/* False: there is none, of another peer, damaged, or unread: then it stays for the next start. */
 static bool read_kept(struct missed *m)
 {
 	FILE *f = fopen(m->path, "re");
@@ -160,6 +160,9 @@ static bool read_kept(struct missed *m)
 	uint64_t key;
 	bool good;
 
+	m->unread = !f && errno != ENOENT;
+	if (m->unread)
+		complain(m, m->path, errno);
 	if (!f)
 		return false;
 	/* NOLINTNEXTLINE(cert-err34-c): a number out of range is neither the key nor a count */
@@ -175,10 +178,13 @@ static bool read_kept(struct missed *m)
 		good = scan_point(f, &old.stretches[i].from) &&
 		       scan_point(f, &old.stretches[i].until);
 	good = good && fscanf(f, " %3s", end) == 1 && !strcmp(end, "end");
+	m->unread = ferror(f);
+	if (m->unread)
+		complain(m, m->path, EIO);
 	fclose(f);
 	if (good)
 		*m = old;
-	else
+	else if (!m->unread)
 		log_notice(m->face->log, "%s is %s: what was missed before is not sent", m->path,
 		           fault);
 	return good;
@@ -408,7 +414,7 @@ void missed_begin(struct missed *m, uint64_t key, int64_t now_ns)
 	m->reached = missed_point(m, now_ns);
 	m->resumed = (struct replay_point){0};
 	m->count = 0;
-	m->logged = m->worth = m->said = m->waits = false;
+	m->logged = m->worth = m->said = m->waits = m->unread = false;
 	m->wait_ns = WAIT_NS;
 	m->next_ns = 0;
 	find_path(m);

@@ -39,6 +39,7 @@ struct missed {
 	int count;
 	struct replay_point resumed; /* when the peer got what changes again */
 	bool logged, worth, said, waits;
+	bool unread; /* there is a file, and nobody knows what is in it */
 	char path[HISTORY_PATH + 16];
 	uint64_t key;
 	int64_t boot, kept_ns, wait_ns, moved_ns;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
@@ -433,6 +434,26 @@ static void test_what_was_kept_for_another_broker_or_is_damaged_does_not_count(v
 }
 
 /* A broker that throws out again and again makes no more stretches than there is room for. */
+/* An error of the disk passes, and what is in the file is of use to the next start. */
+static void test_what_cannot_be_read_is_not_written_over(void)
+{
+	struct stat st;
+
+	record();
+	room(now_ns, 20);
+	written(now_ns + S);
+	TEST_ASSERT_EQUAL_INT(0, mkdir(state, 0700));
+	TEST_ASSERT_EQUAL_INT(0, symlink("reached", kept)); /* ELOOP */
+	begin();
+	settle();
+	past_end(&past);
+	TEST_ASSERT_EQUAL_INT(0, lstat(kept, &st));
+	TEST_ASSERT_TRUE(S_ISLNK(st.st_mode));
+	TEST_ASSERT_EQUAL_INT(0, unlink(kept));
+	begin();
+	TEST_ASSERT_EQUAL_INT(0, access(kept, F_OK));
+}
+
 static void test_more_outages_than_stretches_are_one_at_the_end(void)
 {
 	record();
@@ -463,6 +484,7 @@ int main(void)
 	RUN_TEST(test_a_burst_keeps_its_order_by_the_millisecond);
 	RUN_TEST(test_what_the_recorder_has_not_written_yet_is_waited_for);
 	RUN_TEST(test_a_batch_that_waits_goes_by_the_clock_that_is_set_meanwhile);
+	RUN_TEST(test_what_cannot_be_read_is_not_written_over);
 	RUN_TEST(test_without_a_right_clock_or_a_birth_nothing_goes_out);
 	RUN_TEST(test_a_profile_that_shows_only_what_is_does_nothing);
 	RUN_TEST(test_up_to_where_the_broker_has_all_is_kept_over_a_restart);
