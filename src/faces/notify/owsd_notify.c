@@ -308,8 +308,8 @@ static int notify_start(struct face *face)
 		return -ENOMEM;
 	}
 	notify.seen_ns = notify.looked_ns = now_ns;
-	if (kept_open(&notify.kept, face->ops->program, face->arguments->instance, now_ns,
-	              &notify.seen_ns, &notify.looked_ns)) {
+	if (kept_open(&notify.kept, face->log, face->ops->program, face->arguments->instance,
+	              now_ns, &notify.seen_ns, &notify.looked_ns)) {
 		face_complain(face->ops->program,
 		              "%s is kept by another owsd-notify of %s, which tells the same "
 		              "alarms: end it, or this one",
