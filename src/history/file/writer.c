@@ -27,9 +27,8 @@
 
 /* What a signal has, beside its key. */
 struct kept {
-	int64_t us; /* of its last row; nothing older comes after it */
+	int64_t us; /* of its last row, which may repeat a value; nothing older comes after it */
 	int64_t value;
-	int64_t row_us; /* when it was repeated, or came */
 	char *text;
 	uint8_t quality, type;
 	bool known;
@@ -143,27 +142,39 @@ static void writer_forget(struct history_writer *w, uint32_t key, int64_t us, ui
 	           (struct history_row){.kind = ROW_GAP, .us = us, .key = key, .reason = reason});
 }
 
+/* The key of each signal, which may be a new one. Returns how many keys there are then. */
+static uint32_t find_keys(const struct history_writer *w, const struct history_signal *signals,
+                          uint32_t count, uint32_t *table)
+{
+	uint32_t keys = w->key_count;
+
+	for (uint32_t i = 0; i < count; i++) {
+		int at = find_key(w, history_identity(&signals[i]), w->key_count,
+		                  i < w->count ? w->table[i] : 0);
+
+		table[i] = at < 0 ? keys++ : (uint32_t)at;
+	}
+	return keys;
+}
+
 int history_writer_signals(struct history_writer *w, const struct history_signal *signals,
                            uint32_t count, int64_t now_ns)
 {
 	uint32_t *table = calloc(count + 1, sizeof(*table));
 	bool *there = calloc(w->key_count + count + 1, sizeof(*there));
 	int err = table && there ? room_for_keys(w, w->key_count + count) : -ENOMEM;
-	uint32_t before = w->key_count;
 
-	if (!err && w->key_count + count > HISTORY_SIGNALS)
+	if (!err && find_keys(w, signals, count, table) > HISTORY_SIGNALS)
 		err = -E2BIG;
 	for (uint32_t i = 0; !err && i < count; i++) {
-		int at = find_key(w, history_identity(&signals[i]), before,
-		                  i < w->count ? w->table[i] : 0);
+		uint32_t at = table[i];
 
-		if (at < 0) {
-			at = (int)w->key_count++;
+		if (at == w->key_count) {
+			w->key_count++;
 			w->kept[at] = (struct kept){.us = w->floor_us};
 			w->keys[at] = (struct history_key){0};
 		}
 		set_key(&w->keys[at], &signals[i]);
-		table[i] = (uint32_t)at;
 		there[at] = true;
 	}
 	for (uint32_t i = 0; !err && i < w->key_count; i++) {
@@ -227,10 +238,11 @@ static void add_value_row(struct history_writer *w, uint32_t key, int64_t us)
 {
 	struct kept *kept = &w->kept[key];
 
-	kept->row_us = us;
+	if (us > kept->us)
+		kept->us = us;
 	writer_add(w, (struct history_row){
 			      .kind = ROW_VALUE,
-			      .us = us,
+			      .us = kept->us,
 			      .value = kept->value,
 			      .text = kept->text ? strdup(kept->text) : NULL,
 			      .key = key,
@@ -250,15 +262,12 @@ void history_writer_value(struct history_writer *w, uint32_t signal, int64_t mea
 	kept = &w->kept[w->table[signal]];
 	if (us < w->floor_us)
 		us = w->floor_us;
-	if (us < kept->us)
-		us = kept->us;
 	free(kept->text);
 	kept->type = w->keys[w->table[signal]].type;
 	kept->text = kept->type == OWS_STRING && text ? strndup(text, len) : NULL;
 	kept->value = value;
 	kept->quality = quality;
 	kept->known = true;
-	kept->us = us;
 	add_value_row(w, w->table[signal], us);
 }
 
@@ -293,7 +302,7 @@ void history_writer_clock(struct history_writer *w, int64_t now_ns, int64_t offs
 static void repeat_values(struct history_writer *w, int64_t now_us, bool all)
 {
 	for (uint32_t i = 0; i < w->key_count; i++)
-		if (w->kept[i].known && (all || now_us - w->kept[i].row_us >= REPEAT_US))
+		if (w->kept[i].known && (all || now_us - w->kept[i].us >= REPEAT_US))
 			add_value_row(w, i, now_us);
 	w->repeat_us = now_us;
 }

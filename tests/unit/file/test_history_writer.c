@@ -500,6 +500,48 @@ static void test_a_value_that_was_measured_before_the_last_one_comes_after_it(vo
 	expect(1, 10 * PAST_S, 2);
 }
 
+/* What a bus measured a moment ago arrives after the minute in which what held was repeated. */
+static void test_what_was_measured_before_a_repeated_value_is_not_undone_by_it(void)
+{
+	const int64_t repeated = 3660 * PAST_S, measured = repeated - 3 * PAST_S / 10;
+
+	past_begin(&past, 0, PAST_NOON, true);
+	past_room(&past, 7 * PAST_S, 1);
+	past_lamp(&past, 7 * PAST_S, 1);
+	seconds(8, 3661, 0);
+	past_room(&past, measured, 2);
+	history_writer_forget(past.writer, PAST_LAMP, measured, OWS_HISTORY_OVERRUN);
+	past_end(&past, repeated + 20 * PAST_S);
+	TEST_ASSERT_EQUAL_INT(4, count_of(PAST_ROOM));
+	expect(1, repeated, 1);
+	expect(2, repeated, 2);
+	TEST_ASSERT_EQUAL_INT(3, count_of(PAST_LAMP));
+	expect(1, repeated, 1);
+	expect_gap(2, repeated, OWS_HISTORY_OVERRUN);
+}
+
+/* A reload of the largest table, and one of another. */
+static void test_a_large_table_is_the_same_after_a_reload(void)
+{
+	static struct {
+		struct history_signal signal[HISTORY_SIGNALS];
+		char name[HISTORY_SIGNALS][8];
+	} table;
+	uint32_t count = HISTORY_SIGNALS - PAST_COUNT;
+
+	for (uint32_t i = 0; i < HISTORY_SIGNALS; i++) {
+		snprintf(table.name[i], sizeof(table.name[i]), "s%u", (unsigned)i);
+		table.signal[i] = (struct history_signal){
+			.name = table.name[i], .unit = "", .type = OWS_DOUBLE};
+	}
+	past_begin(&past, 0, PAST_NOON, true);
+	for (int turn = 0; turn < 2; turn++)
+		TEST_ASSERT_EQUAL_INT(0, history_writer_signals(past.writer, table.signal, count,
+		                                                PAST_S));
+	TEST_ASSERT_EQUAL_INT(-E2BIG, history_writer_signals(past.writer, table.signal, count + 1,
+	                                                     PAST_S));
+}
+
 static void test_a_file_that_is_too_large_loses_its_oldest_values(void)
 {
 	past.options.flush_ns = 1800 * PAST_S;
@@ -1181,6 +1223,8 @@ int main(void)
 	RUN_TEST(test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever);
 	RUN_TEST(test_the_journal_is_kept_as_long_as_minutes);
 	RUN_TEST(test_a_value_that_was_measured_before_the_last_one_comes_after_it);
+	RUN_TEST(test_what_was_measured_before_a_repeated_value_is_not_undone_by_it);
+	RUN_TEST(test_a_large_table_is_the_same_after_a_reload);
 	RUN_TEST(test_a_file_that_is_too_large_loses_its_oldest_values);
 	RUN_TEST(test_without_a_directory_it_goes_on_in_memory_and_catches_up);
 	RUN_TEST(test_a_memory_that_is_full_becomes_a_gap_after_which_all_is_known);
