@@ -231,6 +231,19 @@ static void warn_of_patterns(const struct rio *rio, const char *from, const char
 	}
 }
 
+/* A key that may stand several times has no value of its own where it does: rights would go. */
+static int check_single(const struct rio_node *block, enum option_place place, const char *key,
+                        struct config_report *report)
+{
+	int option = option_find(place, key);
+	const struct rio_node *node = rio_child(block, key);
+
+	if (option < 0 || !option_table[option].repeats || !node || !rio_next(node))
+		return 0;
+	report_error(report, command_line, "%s stands more than once: change it in the text", key);
+	return -EINVAL;
+}
+
 static int set_all(struct rio **rio, const char *name, const char *const *settings, unsigned count,
                    struct config_report *report)
 {
@@ -257,6 +270,8 @@ static int set_all(struct rio **rio, const char *name, const char *const *settin
 		if (!err && option == OPT_NAME && place == PLACE_ITEM &&
 		    is_driver_name(value, report))
 			err = -EINVAL;
+		if (!err)
+			err = check_single(block, place, option_table[option].key, report);
 		if (!err)
 			err = put_setting(rio, block, option, value);
 		/* the item has its new name from here on */
@@ -319,7 +334,9 @@ static int unset_all(struct rio **rio, const char *name, const char *const *keys
 			report_error(report, command_line, "\"%s\" has no key %s", name, keys[i]);
 			return -EINVAL;
 		}
-		err = rio_remove(rio, node);
+		err = check_single(block, place, keys[i], report);
+		if (!err)
+			err = rio_remove(rio, node);
 	}
 	return err;
 }

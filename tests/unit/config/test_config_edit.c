@@ -331,6 +331,31 @@ static void test_what_cannot_be_edited_is_said(void)
 	expect_text(genuine);
 }
 
+/* The first of two would be lost, and with it rights. */
+static void test_a_key_that_stands_twice_is_changed_in_the_text_alone(void)
+{
+	static const char text[] = "OwsDrv {\n"
+				   "  ControlAllow \"pump* user:root\"\n"
+				   "  ControlAllow \"heat* group:root\"\n"
+				   "  Timeout 10\n"
+				   "}\n";
+	const char *key = "ControlAllow";
+
+	parse(text);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, set("OwsDrv", "ControlAllow=light* user:root"));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_unset(&rio, "OwsDrv", &key, 1, &report));
+	TEST_ASSERT_EQUAL_STRING("error: ControlAllow stands more than once: change it in the text\n"
+	                         "error: ControlAllow stands more than once: change it in the text\n",
+	                         said);
+	expect_text(text);
+	said_begin();
+	parse("OwsDrv {\n  ControlAllow \"pump* user:root\"\n  Timeout 10\n}\n");
+	TEST_ASSERT_EQUAL_INT(0, set("OwsDrv", "ControlAllow=light* user:root"));
+	expect_text("OwsDrv {\n  ControlAllow \"light* user:root\"\n  Timeout 10\n}\n");
+	TEST_ASSERT_EQUAL_INT(0, edit_unset(&rio, "OwsDrv", &key, 1, &report));
+	expect_text("OwsDrv {\n  Timeout 10\n}\n");
+}
+
 static void read_back(const char *path, char *text, size_t size)
 {
 	FILE *in = fopen(path, "r");
@@ -754,6 +779,7 @@ int main(void)
 	RUN_TEST(test_an_item_is_added_to_a_configuration_without_items);
 	RUN_TEST(test_every_edit_keeps_the_line_ends_of_the_file);
 	RUN_TEST(test_what_cannot_be_edited_is_said);
+	RUN_TEST(test_a_key_that_stands_twice_is_changed_in_the_text_alone);
 	RUN_TEST(test_a_result_that_is_no_configuration_never_reaches_the_file);
 	RUN_TEST(test_a_target_or_a_bus_that_is_there_already_never_reaches_the_file);
 	RUN_TEST(test_a_replaced_file_keeps_its_mode_and_is_a_new_one);
