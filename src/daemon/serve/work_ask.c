@@ -105,22 +105,30 @@ void work_refuse_directory(struct serve *s, struct client *c)
 
 /* --- The type of a property that the server does not know, to convert its units --------------- */
 
+static uint8_t *type_room(struct client *c)
+{
+	return c->request.type == FRAME_WRITE ? client_room(c) : client_room(c) + c->value_len;
+}
+
+static void ask_structure(struct serve *s, struct client *c, uint8_t family)
+{
+	snprintf(c->path, sizeof(c->path), "/structure/%02X%s", family,
+	         c->node.path + c->node.device_len);
+	work_ask(s, c, STEP_STRUCTURE, BUS_READ, GUEST_ANY_LANE, type_room(c), 64);
+}
+
 bool work_ask_type(struct serve *s, struct client *c)
 {
 	const struct node *node = &c->node;
-	uint8_t *room = c->request.type == FRAME_WRITE ? client_room(c)
-	                                               : client_room(c) + c->value_len;
 
 	if (node->type || !node->has_device || !units_asked(c->request.flags))
 		return false;
-	if (!node->has_rom) {
+	if (node->has_rom) {
+		ask_structure(s, c, node->rom[0]);
+	} else {
 		work_device_path(c, "/family");
-		work_ask(s, c, STEP_FAMILY, BUS_READ, GUEST_ANY_LANE, room, 64);
-		return true;
+		work_ask(s, c, STEP_FAMILY, BUS_READ, GUEST_ANY_LANE, type_room(c), 64);
 	}
-	snprintf(c->path, sizeof(c->path), "/structure/%02X%s", node->rom[0],
-	         node->path + node->device_len);
-	work_ask(s, c, STEP_STRUCTURE, BUS_READ, GUEST_ANY_LANE, room, 64);
 	return true;
 }
 
@@ -150,10 +158,10 @@ bool work_typed(struct serve *s, struct client *c, int err)
 			         c->node.path + c->node.device_len);
 			node_parse(path, strlen(path), &like);
 			c->node.type = like.type;
-			c->node.has_rom = true;
-			memcpy(c->node.rom, rom, ROM_LEN);
-			if (!like.type && work_ask_type(s, c))
+			if (!like.type) {
+				ask_structure(s, c, rom[0]);
 				return false;
+			}
 		}
 	}
 	if (!c->node.type)

@@ -24,6 +24,7 @@
 
 #define TYPE "/28.551DDF030000/type"
 #define FLAGS (FRAME_PERSIST | 0x100)
+#define FAHRENHEIT (UINT32_C(1) << 16)
 
 #define ROOM \
 	{ \
@@ -298,6 +299,34 @@ static void test_an_input_from_before_a_write_to_its_device_does_not_answer(void
 	ask(fd, FRAME_READ, "/28.551DDF030000/temperature");
 	TEST_ASSERT_EQUAL_INT(12, answer(fd));
 	TEST_ASSERT_EQUAL_STRING("        24.5", data);
+}
+
+/* An alias may name any device, also where its family was asked for to convert the units. */
+static void test_a_write_by_an_alias_forgets_what_was_read_in_all_units(void)
+{
+	static uint8_t frame[FRAME_REQUEST_MAX];
+	int n = frame_request(frame, FRAME_WRITE, FLAGS | FAHRENHEIT, 2, "/kitchen/temphigh",
+	                      (const uint8_t *)"86", 2);
+	struct engine_guest *g;
+
+	ask(fd, FRAME_READ, TYPE);
+	give(next_guest(), "DS18B20");
+	TEST_ASSERT_EQUAL_INT(7, answer(fd));
+	TEST_ASSERT_EQUAL_INT(n, send(fd, frame, (size_t)n, MSG_NOSIGNAL));
+	g = next_guest();
+	TEST_ASSERT_EQUAL_STRING("/kitchen/family", g->path);
+	give(g, "28");
+	g = next_guest();
+	TEST_ASSERT_EQUAL_STRING("/kitchen/temphigh", g->path);
+	TEST_ASSERT_EQUAL_STRING_LEN("30", g->data, g->len);
+	g->answer = (struct bus_answer){.len = 2};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT32(0, answer(fd));
+	ask(fd, FRAME_READ, TYPE);
+	until_it_has_seen_all();
+	TEST_ASSERT_EQUAL_UINT64(0, counted("served_kept_answers"));
+	give(next_guest(), "DS18B20");
+	TEST_ASSERT_EQUAL_INT(7, answer(fd));
 }
 
 static void test_what_was_read_before_a_device_was_found_absent_answers_nobody(void)
@@ -609,6 +638,7 @@ int main(void)
 	RUN_TEST(test_what_is_not_known_here_is_asked_of_the_engine_once);
 	RUN_TEST(test_an_input_of_the_table_is_answered_from_the_image);
 	RUN_TEST(test_an_input_from_before_a_write_to_its_device_does_not_answer);
+	RUN_TEST(test_a_write_by_an_alias_forgets_what_was_read_in_all_units);
 	RUN_TEST(test_what_was_read_before_a_device_was_found_absent_answers_nobody);
 	RUN_TEST(test_one_request_of_a_client_is_worked_on_at_a_time);
 	RUN_TEST(test_who_was_given_up_waits_for_his_room_before_the_next_request);
