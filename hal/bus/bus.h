@@ -41,7 +41,8 @@ enum bus_kind {
 
 enum bus_news {
 	BUS_UP,       /* requests can be served from now on */
-	BUS_DOWN,     /* the target is lost: err and text say why; sent once per loss */
+	BUS_DOWN,     /* the target is lost: err and text say why; sent once per loss, and again
+	                 when one that was gone is there and cannot be opened */
 	BUS_FOUND,    /* the device rom appeared (buses that search) */
 	BUS_LOST,     /* the device rom disappeared */
 	BUS_POR,      /* the device rom was seen to have restarted */

@@ -125,6 +125,18 @@ static int open_master(struct native *native, char why[BUS_EVENT_TEXT])
 	return err;
 }
 
+/* Of one that is there again, and does not open, it is another reason than that it was gone. */
+static void tell_down(struct native *native, int err, const char *why)
+{
+	bool is_gone = err == -ENODEV;
+
+	if (native->told && native->told_gone == is_gone)
+		return;
+	native->told = true;
+	native->told_gone = is_gone;
+	native_event(native, BUS_DOWN, NULL, err, why);
+}
+
 int64_t master_step(struct native *native, int64_t now)
 {
 	char why[BUS_EVENT_TEXT] = "";
@@ -140,9 +152,8 @@ int64_t master_step(struct native *native, int64_t now)
 		if (native->pause_ns > most)
 			native->pause_ns = most;
 		native->open_ns = native_now(native) + native->pause_ns;
-		if (!native->told && err != -ECANCELED)
-			native_event(native, BUS_DOWN, NULL, err, why);
-		native->told = true;
+		if (err != -ECANCELED)
+			tell_down(native, err, why);
 		return native->open_ns;
 	}
 	native->pause_ns = 0;
@@ -167,10 +178,8 @@ void master_down(struct native *native, int err, const char *why)
 	native->pause_ns = PAUSE_MIN_NS;
 	for (struct job *job = NULL; (job = native_job(native, job));)
 		job_answer(native, job, job->begun ? -ECONNRESET : -ENOTCONN);
-	if (err) {
-		native_event(native, BUS_DOWN, NULL, err, why);
-		native->told = true;
-	}
+	if (err)
+		tell_down(native, err, why);
 }
 
 /* Conversions that were under way are void. */

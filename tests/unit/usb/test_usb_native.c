@@ -153,6 +153,41 @@ static void test_one_that_is_pulled_is_down_at_once_and_up_at_another_port(void)
 	read_all();
 }
 
+/* The error of the last BUS_DOWN of so many. */
+static int down_of(unsigned count)
+{
+	int err = 0;
+
+	TEST_ASSERT_EQUAL_UINT(count, host_events(&sticks.host, BUS_DOWN));
+	for (unsigned i = 0; i < sticks.host.events; i++)
+		if (sticks.host.event[i].news == BUS_DOWN)
+			err = sticks.host.event[i].err;
+	return err;
+}
+
+static void test_one_that_is_back_and_cannot_be_opened_is_not_called_gone(void)
+{
+	bus = sticks_bus(house);
+	stick_pull(&sticks.stick[0]);
+	host_run(&sticks.host, bus, sticks.host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, down_of(1));
+	sticks.stick[0].refuses = -EACCES;
+	stick_plug(&sticks.stick[0], "1-2");
+	host_run(&sticks.host, bus, sticks.host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(-EACCES, down_of(2));
+	sticks.stick[0].refuses = -EBUSY;
+	host_run(&sticks.host, bus, sticks.host.now + 10 * HOST_S);
+	stick_pull(&sticks.stick[0]);
+	host_run(&sticks.host, bus, sticks.host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, down_of(3));
+	sticks.stick[0].refuses = 0;
+	stick_plug(&sticks.stick[0], "1-2");
+	host_run(&sticks.host, bus, sticks.host.now + 10 * HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&sticks.host, BUS_UP));
+	read_all();
+	TEST_ASSERT_EQUAL_INT(-ENODEV, down_of(3));
+}
+
 /* Whenever the wire is short: an error or the temperature, and never 0 degrees. */
 static void test_a_short_is_no_value(void)
 {
@@ -201,6 +236,7 @@ int main(void)
 	RUN_TEST(test_it_reads_writes_and_feeds);
 	RUN_TEST(test_a_silent_adapter_is_down_within_three_seconds_of_work);
 	RUN_TEST(test_one_that_is_pulled_is_down_at_once_and_up_at_another_port);
+	RUN_TEST(test_one_that_is_back_and_cannot_be_opened_is_not_called_gone);
 	RUN_TEST(test_a_short_is_no_value);
 	RUN_TEST(test_transfers_that_fail_make_no_value);
 	return UNITY_END();
