@@ -289,7 +289,9 @@ struct native {
 		wire_each_ns[NATIVE_CHANNELS]; /* of each so far */
 
 	/* master.c; native.c, when it suspends the bus or lets it go on */
-	bool up, told, told_gone; /* told: of the loss, and that it is gone */
+	bool up;
+	/* of a loss; and that it is gone */
+	bool told, told_gone;
 	int down_err;          /* why it is down; 0: it was not opened, or let go of in order */
 	int64_t open_ns;       /* next try to open */
 	int64_t pause_ns;      /* between tries */

@@ -64,7 +64,7 @@ int verb_dir(struct ctl *ctl, int argc, char **argv)
 	if (target_ask_one(&target, &ask)) {
 		status = ctl_fail("%s: %s%s", path,
 		                  ask.answer.err == -ENOENT ? "no such directory"
-		                                            : error_text(ask.answer.err),
+		                                            : target_error(&target, ask.answer.err),
 		                  open_asked(ctl, &target, &served));
 	} else {
 		text[ask.answer.len] = '\0';

@@ -13,6 +13,7 @@
 
 #include "hal/bus/tap.h"
 #include "src/faces/show/json.h"
+#include "src/ground/signal/error.h"
 #include "src/tool/scan/target.h"
 
 #define GRACE_NS (2 * NS_PER_S) /* after its deadline the bus has this time to end a request */
@@ -187,6 +188,13 @@ int target_ask_one(struct target *target, struct ask *ask)
 {
 	target_ask(target, ask, 1);
 	return ask->answer.err;
+}
+
+const char *target_error(const struct target *target, int err)
+{
+	bool lost = target->down && (err == -ECONNRESET || err == -ENOTCONN);
+
+	return lost && *target->loss.text ? target->loss.text : error_text(err);
 }
 
 bool target_path(const char *given, char path[256], bool *fresh)

@@ -53,6 +53,8 @@ void target_close(struct target *target);
 void target_ask(struct target *target, struct ask *asks, unsigned count);
 /* Do one request. Returns the error of its answer. */
 int target_ask_one(struct target *target, struct ask *ask);
+/* The words of that error; of a target that was lost meanwhile, why. */
+const char *target_error(const struct target *target, int err);
 
 /*
  * The path of a request: one "/" in front, without /uncached, which sets *fresh. False: too long.

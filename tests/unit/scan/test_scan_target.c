@@ -10,6 +10,7 @@
 
 #include "hal/chips/family.h"
 #include "src/faces/show/json.h"
+#include "src/ground/signal/error.h"
 #include "src/tool/scan/device.h"
 #include "src/tool/scan/left_out.h"
 #include "src/tool/scan/scan.h"
@@ -94,6 +95,17 @@ static void test_uncached_is_taken_from_the_path(void)
 	TEST_ASSERT_TRUE(target_path(longest, path, &fresh));
 	longest[0] = 'x';
 	TEST_ASSERT_FALSE(target_path(longest, path, &fresh));
+}
+
+static void test_a_target_that_was_lost_says_why(void)
+{
+	struct target target = {.down = true, .loss = {.text = "the adapter is gone"}};
+
+	TEST_ASSERT_EQUAL_STRING("the adapter is gone", target_error(&target, -ECONNRESET));
+	TEST_ASSERT_EQUAL_STRING("the adapter is gone", target_error(&target, -ENOTCONN));
+	TEST_ASSERT_EQUAL_STRING(error_text(-ENOENT), target_error(&target, -ENOENT));
+	target.down = false;
+	TEST_ASSERT_EQUAL_STRING(error_text(-ECONNRESET), target_error(&target, -ECONNRESET));
 }
 
 /* "PIO.BYTE" is PIO with an extension, "temperature" itself. */
@@ -277,6 +289,7 @@ int main(void)
 	RUN_TEST(test_padding_before_numbers_is_taken_off);
 	RUN_TEST(test_text_that_is_no_padded_number_stays);
 	RUN_TEST(test_numbers_are_those_that_json_has);
+	RUN_TEST(test_a_target_that_was_lost_says_why);
 	RUN_TEST(test_uncached_is_taken_from_the_path);
 	RUN_TEST(test_what_a_scan_reads_is_there_in_our_own_families);
 	RUN_TEST(test_a_chip_of_a_family_with_kinds_has_what_its_list_has);

@@ -23,7 +23,7 @@
 
 #define ROOM_KB 1024 /* the image of 2 000 signals, or some minutes of history */
 #define SHOWN 3      /* of the errors of a file, and of the warnings */
-#define SCAN_BEGIN "sudo systemctl stop owsd@%s; owsctl -t %s scan --rio "
+#define SCAN_BEGIN "sudo systemctl stop owsd@%s; owsctl -t %s scan --rio --bits "
 #define SCAN_END ">new.rio && sudo cp new.rio %s; sudo systemctl start owsd@%s"
 #define PORT_TEXT 200
 #define OWSERVER "localhost:4304" /* a way of auto */

@@ -377,7 +377,7 @@ static int find_devices(struct target *target, bool of_owsd, struct scan *scan, 
 		                "they do",
 		                target->name);
 	if (err && err != -ENOMEM)
-		return ctl_fail("%s: %s", target->name, error_text(err));
+		return ctl_fail("%s: %s", target->name, target_error(target, err));
 	if (scan->disturbed)
 		ctl_fail("%s: each search was disturbed (%s): what it knew before is listed, "
 		         "and devices may be missing",
