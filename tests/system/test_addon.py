@@ -34,6 +34,7 @@ PASSWORD = 'pass "w\\nord'  # what JSON, a shell and a .rio have an escape for
 NAMES = f"localhost supervisor core-mosquitto {HOST}"
 FILES = SOURCE / "board/addon"
 ROOM, NEW, SWITCH = "28.A0B1C2000001", "28.A0B1C2000007", "29.A0B1C2000004"
+BOARD = "ds2408_" + SWITCH.lower().replace(".", "_")
 WIRE = "chip DS2482-100 0x18\nDS18B20 {} temperature {}\nDS2408 " + SWITCH + "\n"
 USERS = {"owsd": 64711}
 GROUPS = {"owsd": 64711, "owsd-control": 64712, "owsd-config": 64713}
@@ -242,10 +243,10 @@ def test_nothing_is_typed_and_a_replaced_chip_keeps_its_history(scene):
             other.sendall(b"GET /api/info HTTP/1.1\r\nHost: localhost\r\nX-Remote-User-Name: anna\r\n\r\n")
             assert b" 403 " in other.recv(100)
         # Home Assistant moves an output
-        switch = next(name for name in judge.states() if name.startswith("number."))
-        judge.act("number.set_value", switch, value=5)
-        name = next(s["name"] for s in page(server, "signals")["signals"] if s["path"] == f"/{SWITCH}/PIO.BYTE")
-        house.shows(name, "5")
+        assert not [name for name in judge.states() if name.startswith("number.")], judge.states()
+        judge.act("switch.turn_on", f"switch.{BOARD}_output1")
+        name = next(s["name"] for s in page(server, "signals")["signals"] if s["path"] == f"/{SWITCH}/PIO.0")
+        house.shows(name, "1")
         # another thermometer in the place of the first
         device = judge.states()["sensor.temperature1"][1]
         house.wire.stop()

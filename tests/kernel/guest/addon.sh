@@ -177,9 +177,9 @@ same "and what is not the script more so" "" "$(confined | grep '^owsd' | grep -
 confined | sort -u | sed 's/^/# /'
 does "the container is healthy" inside sh -c 'owsctl instances | grep -q running'
 does "MQTT has the value" within $patience published temperature1 '"v":21.5'
-name=$(page signals | inside jq -r '.signals[] | select(.path | endswith("PIO.BYTE")).name')
-mosquitto_pub -h 127.0.0.1 -t owsd/homeassistant/$name/set -m 5
-does "MQTT moves an output" within $patience reads $name 5
+name=$(page signals | inside jq -r '.signals[] | select(.path | endswith("PIO.0")).name')
+mosquitto_pub -h 127.0.0.1 -t owsd/homeassistant/$name/set -m on
+does "MQTT moves an output" within $patience reads $name 1
 does "the page has the signals" page_has signals temperature1
 does "and what is on the wires" within $patience page_has devices 28.A0B1C2000028
 does "it checks a configuration" send_back '{text, do: "check"}' config/draft
