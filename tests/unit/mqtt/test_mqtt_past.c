@@ -433,7 +433,6 @@ static void test_what_was_kept_for_another_broker_or_is_damaged_does_not_count(v
 	TEST_ASSERT_EQUAL_INT64(4, past.missed.stretches[0].until.us);
 }
 
-/* A broker that throws out again and again makes no more stretches than there is room for. */
 /* An error of the disk passes, and what is in the file is of use to the next start. */
 static void test_what_cannot_be_read_is_not_written_over(void)
 {
@@ -454,6 +453,7 @@ static void test_what_cannot_be_read_is_not_written_over(void)
 	TEST_ASSERT_EQUAL_INT(0, access(kept, F_OK));
 }
 
+/* A broker that throws out again and again makes no more stretches than there is room for. */
 static void test_more_outages_than_stretches_are_one_at_the_end(void)
 {
 	record();
