@@ -197,8 +197,8 @@ static bool place_signal(struct modbus *m, int signal)
 }
 
 /*
- * The map belongs to one program alone; -EBUSY: to another one. A directory that is not there yet is
- * locked when the map is read or written in it.
+ * The map belongs to one program alone; -EBUSY: to another one. A directory that is not there yet
+ * is locked when the map is read or written in it.
  */
 static int lock_map(struct modbus *m)
 {

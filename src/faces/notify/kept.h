@@ -19,8 +19,8 @@ struct kept {
 /*
  * Find the file, and what it has: entries up to *told_ns were told, alarms up to *looked_ns looked
  * at for escalation. 0: it is of another boot, or cannot be read, which is logged. There is none:
- * both stay. 0, or -EBUSY: another owsd-notify keeps the file. A directory that cannot be written is
- * no error; it is locked when it can be.
+ * both stay. 0, or -EBUSY: another owsd-notify keeps the file. A directory that cannot be written
+ * is no error; it is locked when it can be.
  */
 int kept_open(struct kept *kept, struct log *log, const char *program, const char *instance,
               int64_t now_ns, int64_t *told_ns, int64_t *looked_ns);

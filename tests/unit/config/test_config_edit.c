@@ -344,9 +344,10 @@ static void test_a_key_that_stands_twice_is_changed_in_the_text_alone(void)
 	parse(text);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, set("OwsDrv", "ControlAllow=light* user:root"));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, edit_unset(&rio, "OwsDrv", &key, 1, &report));
-	TEST_ASSERT_EQUAL_STRING("error: ControlAllow stands more than once: change it in the text\n"
-	                         "error: ControlAllow stands more than once: change it in the text\n",
-	                         said);
+	TEST_ASSERT_EQUAL_STRING(
+		"error: ControlAllow stands more than once: change it in the text\n"
+		"error: ControlAllow stands more than once: change it in the text\n",
+		said);
 	expect_text(text);
 	said_begin();
 	parse("OwsDrv {\n  ControlAllow \"pump* user:root\"\n  Timeout 10\n}\n");

@@ -536,10 +536,10 @@ static void test_a_large_table_is_the_same_after_a_reload(void)
 	}
 	past_begin(&past, 0, PAST_NOON, true);
 	for (int turn = 0; turn < 2; turn++)
-		TEST_ASSERT_EQUAL_INT(0, history_writer_signals(past.writer, table.signal, count,
-		                                                PAST_S));
-	TEST_ASSERT_EQUAL_INT(-E2BIG, history_writer_signals(past.writer, table.signal, count + 1,
-	                                                     PAST_S));
+		TEST_ASSERT_EQUAL_INT(
+			0, history_writer_signals(past.writer, table.signal, count, PAST_S));
+	TEST_ASSERT_EQUAL_INT(-E2BIG,
+	                      history_writer_signals(past.writer, table.signal, count + 1, PAST_S));
 }
 
 static void test_a_file_that_is_too_large_loses_its_oldest_values(void)

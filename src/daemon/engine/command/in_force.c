@@ -8,7 +8,6 @@
 
 #include "hal/base/time.h"
 #include "src/daemon/engine/command/in_force.h"
-#include "src/daemon/engine/command/intake.h"
 #include "src/daemon/engine/command/last.h"
 #include "src/daemon/engine/command/origin.h"
 #include "src/daemon/engine/publish.h"

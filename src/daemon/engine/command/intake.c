@@ -5,6 +5,7 @@
 #include "hal/base/time.h"
 #include "src/daemon/engine/command/in_force.h"
 #include "src/daemon/engine/command/intake.h"
+#include "src/daemon/engine/command/origin.h"
 #include "src/daemon/engine/limits/limits.h"
 #include "src/daemon/engine/publish.h"
 #include "src/daemon/engine/retry.h"
@@ -22,25 +23,6 @@
 #define LOOKS_LEAST 5000u
 #define LOOKS_SPAN_NS NS_PER_S
 #define DEFER_NS (10 * NS_PER_MS)
-
-void engine_refuse(struct engine *e, struct known_controller *g, const struct signal *s, int err)
-{
-	char others[LOG_OTHERS];
-	uint64_t n = log_rate(&e->refused, e->time.now_ns);
-
-	e->counters.refused_commands++;
-	g->refused++;
-	if (n)
-		log_warning(
-			e->log, "%s: a command of " LOG_PROGRAM " was refused: %s%s", s->item->name,
-			g->as.who.name, (int)g->as.who.pid, (unsigned)g->as.who.uid,
-			err == -EROFS    ? "the signal is an input, and Writable is off"
-			: err == -EACCES ? "ControlAllow does not let it command the signal"
-			: err == -ERANGE ? "the type cannot hold it, or it is beyond Min and Max"
-			: err == -ESTALE ? "owsd ended before the bus had confirmed it"
-					 : "the text is damaged",
-			log_others(n, others));
-}
 
 static bool may_command(const struct known_controller *g, uint32_t record)
 {

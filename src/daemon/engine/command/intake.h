@@ -4,8 +4,6 @@
 
 #include "src/daemon/engine/state.h"
 
-/* Count and log a command that is not taken, or was not written before owsd ended (-ESTALE). */
-void engine_refuse(struct engine *e, struct known_controller *g, const struct signal *s, int err);
 /* Look at all that a connected controller has marked. */
 void engine_intake(struct engine *e, uint32_t controller);
 /*

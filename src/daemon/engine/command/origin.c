@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Who gave the command in force: the origins in the image, and the journal of commands. */
+/*
+ * Who gave the command in force: the origins in the image, and the journal of commands. Whose command
+ * was refused.
+ */
+#include <errno.h>
 #include <string.h>
 
 #include "hal/base/time.h"
 #include "src/daemon/engine/command/origin.h"
+#include "src/ground/text/log.h"
 #include "src/memory/shm/entries.h"
 
 /* A controller that commands a signal without end for one person has one entry a second. */
@@ -167,4 +172,23 @@ void engine_origin_begin(struct engine *e, struct signal *s)
 	s->journal = (struct signal_journal){.reason = entry.reason, .entered_ns = entry.taken_ns};
 	enter_command(e, s, (enum ows_reason)entry.reason, &entry.who, &before, entry.taken_ns);
 	image_origin(e->image, s->record, &entry);
+}
+
+void engine_refuse(struct engine *e, struct known_controller *g, const struct signal *s, int err)
+{
+	char others[LOG_OTHERS];
+	uint64_t n = log_rate(&e->refused, e->time.now_ns);
+
+	e->counters.refused_commands++;
+	g->refused++;
+	if (n)
+		log_warning(
+			e->log, "%s: a command of " LOG_PROGRAM " was refused: %s%s", s->item->name,
+			g->as.who.name, (int)g->as.who.pid, (unsigned)g->as.who.uid,
+			err == -EROFS    ? "the signal is an input, and Writable is off"
+			: err == -EACCES ? "ControlAllow does not let it command the signal"
+			: err == -ERANGE ? "the type cannot hold it, or it is beyond Min and Max"
+			: err == -ESTALE ? "owsd ended before the bus had confirmed it"
+					 : "the text is damaged",
+			log_others(n, others));
 }

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Who gave the command in force: the origins in the image, and the journal of commands. */
+/*
+ * Who gave the command in force: the origins in the image, and the journal of commands. Whose command
+ * was refused.
+ */
 #pragma once
 
 #include "src/daemon/engine/state.h"
@@ -26,3 +29,5 @@ void engine_origin_carry(struct engine *e, const struct signal *s, const struct 
                          uint32_t record);
 /* A reload: owsd itself begins s with the command in force, which engine_resume() made. */
 void engine_origin_begin(struct engine *e, struct signal *s);
+/* Count and log a command that is not taken, or was not written before owsd ended (-ESTALE). */
+void engine_refuse(struct engine *e, struct known_controller *g, const struct signal *s, int err);
