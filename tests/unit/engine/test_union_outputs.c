@@ -111,6 +111,32 @@ static void test_a_write_in_doubt_holds_the_other_target_back_and_is_made_good(v
 	TEST_ASSERT_EQUAL_INT32(0, scene_sample(&s, 1).err);
 }
 
+/* A set of an input was an event: the other target does not do it once more. */
+static void test_a_set_of_an_input_in_doubt_is_not_repeated_elsewhere(void)
+{
+	scene_input(&s, "pio", PIO, OWS_BYTE)->writable = true;
+	scene_put_on(&s, 0, PIO, "0", 0);
+	two_wires_up(&s);
+	scene_run(&s, SCENE_S);
+	s.bus[0].mute = true;
+	scene_set(&s, 1, 5);
+	scene_run(&s, 100 * SCENE_MS);
+	TEST_ASSERT_EQUAL_UINT(1, s.bus[0].writes);
+	scene_plug(&s, D3, 1);
+	scene_tell(&s, 1, BUS_FOUND, D3);
+	scene_tell(&s, 0, BUS_LOST, D3);
+	scene_run(&s, 10 * SCENE_S);
+	s.bus[0].mute = false;
+	for (unsigned i = 0; i < s.bus[0].swallowed_count; i++)
+		scene_answer_on(&s, 0, s.bus[0].swallowed[i]->id,
+		                s.bus[0].swallowed[i]->op == BUS_WRITE ? 0 : -ENODEV, NULL,
+		                s.bus[0].swallowed[i]);
+	s.bus[0].swallowed_count = 0;
+	scene_run(&s, 10 * SCENE_S);
+	TEST_ASSERT_EQUAL_UINT(1, s.writes);
+	scene_expect(&s, 1, OWS_Q_GOOD, 1);
+}
+
 static void test_a_write_in_flight_during_a_move_is_made_good_in_its_turn(void)
 {
 	scene_output(&s, "pio", PIO, OWS_BYTE);
@@ -192,6 +218,7 @@ int main(void)
 	RUN_TEST(test_an_input_is_not_written_again_where_its_device_is_now);
 	RUN_TEST(test_a_safe_value_follows_the_device);
 	RUN_TEST(test_a_write_in_doubt_holds_the_other_target_back_and_is_made_good);
+	RUN_TEST(test_a_set_of_an_input_in_doubt_is_not_repeated_elsewhere);
 	RUN_TEST(test_a_write_in_flight_during_a_move_is_made_good_in_its_turn);
 	RUN_TEST(test_a_single_write_that_was_on_its_way_is_asked_of_the_new_target);
 	RUN_TEST(test_inputs_are_not_starved_by_outputs_that_came);
