@@ -164,6 +164,7 @@ takes() {
 	for t; do
 		for u in $(units "$t"); do
 			does "$what: $u runs as it is on the disk" within 20 serving "$u"
+			within 0 serving "$u" || systemctl status --no-pager -n 20 "$u"
 		done
 		case $t in owsd-web)
 			does "$what: the page answers at its socket" asks /run/owsd/OWS.web

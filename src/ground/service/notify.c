@@ -7,11 +7,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "src/ground/service/notify.h"
 #include "src/ground/text/printable.h"
+
+/* With a manager that loads its units anew; in a container it takes ten datagrams meanwhile. */
+#define PATIENCE_S 5
 
 /* A whole number greater than 0, else 0. */
 static int64_t positive(const char *text)
@@ -59,6 +63,8 @@ int notify_open(struct notify *notify)
 	notify->fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
 	if (notify->fd < 0)
 		return -errno;
+	setsockopt(notify->fd, SOL_SOCKET, SO_SNDTIMEO, &(struct timeval){.tv_sec = PATIENCE_S},
+	           sizeof(struct timeval));
 	notify->watchdog_ns = watchdog_ns();
 	return 0;
 }
@@ -70,14 +76,17 @@ void notify_close(struct notify *notify)
 	notify->fd = -1;
 }
 
-static int send_text(const struct notify *notify, const char *text)
+static int send_text(const struct notify *notify, const char *text, int flags)
 {
+	ssize_t sent = 0;
+
 	if (notify->fd < 0)
 		return 0;
-	if (sendto(notify->fd, text, strlen(text), MSG_DONTWAIT | MSG_NOSIGNAL,
-	           (const struct sockaddr *)&notify->address, notify->len) < 0)
-		return -errno;
-	return 0;
+	do
+		sent = sendto(notify->fd, text, strlen(text), flags | MSG_NOSIGNAL,
+		              (const struct sockaddr *)&notify->address, notify->len);
+	while (sent < 0 && errno == EINTR);
+	return sent < 0 ? -errno : 0;
 }
 
 int notify_send(const struct notify *notify, enum notify_news news)
@@ -92,11 +101,11 @@ int notify_send(const struct notify *notify, enum notify_news news)
 	char text[64];
 
 	if (news != NOTIFY_RELOADING)
-		return send_text(notify, texts[news]);
+		return send_text(notify, texts[news], news == NOTIFY_WATCHDOG ? MSG_DONTWAIT : 0);
 	clock_gettime(CLOCK_MONOTONIC, &now);
 	snprintf(text, sizeof(text), "%s\nMONOTONIC_USEC=%" PRId64, texts[news],
 	         (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000);
-	return send_text(notify, text);
+	return send_text(notify, text, 0);
 }
 
 int notify_status(const struct notify *notify, const char *format, ...)
@@ -109,5 +118,5 @@ int notify_status(const struct notify *notify, const char *format, ...)
 	va_end(args);
 	/* systemd takes no status that is not UTF-8 */
 	text[printable(text, printable_cut(text, sizeof(text) - 1))] = '\0';
-	return send_text(notify, text);
+	return send_text(notify, text, 0);
 }

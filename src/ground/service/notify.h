@@ -34,7 +34,10 @@ enum notify_news {
 int notify_open(struct notify *notify);
 void notify_close(struct notify *notify);
 
-/* Never blocks. Returns 0, or the negative errno of sending, which the caller may ignore. */
+/*
+ * Returns 0, or the negative errno of sending, which the caller may ignore. All but NOTIFY_WATCHDOG
+ * wait for room up to 5 s, for they are told once: a unit whose NOTIFY_READY is lost never runs.
+ */
 int notify_send(const struct notify *notify, enum notify_news news);
 /* What `systemctl status` shows; cut at 255 bytes, control characters become '?'. */
 int notify_status(const struct notify *notify, const char *format, ...)
