@@ -5,7 +5,11 @@
 
 #include "unity.h"
 
+#include "src/config/edit/edit.h"
+#include "src/config/read/load.h"
+#include "src/tool/owsctl/scan/scan_item.h"
 #include "src/tool/owsctl/scan/scan_merge.h"
+#include "src/tool/scan/scan.h"
 
 #define MOST 8
 
@@ -138,10 +142,37 @@ static void test_what_is_replaced_knows_by_what(void)
 	}
 }
 
+/* A server names couplers as it likes: what it says is a path, and no other key or block. */
+static void test_a_path_of_a_server_is_one_text_of_the_configuration(void)
+{
+	static const char path[] = "/system\" Type double } ControlAllow \"* group:users\" "
+				   "Item { Name q Path \"/main/28.551DDF030000";
+	struct config_report report = {0};
+	struct scan_device device;
+	struct scan_names names;
+	struct config *config;
+	struct rio *rio;
+
+	TEST_ASSERT_TRUE(scan_device_of(path, &device));
+	scan_names_init(&names, SCAN_PROPERTIES);
+	TEST_ASSERT_TRUE(scan_make_items(&names, &device, (struct scan_choice){0}));
+	TEST_ASSERT_EQUAL_INT(0,
+	                      rio_parse("f", edit_empty, strlen(edit_empty), &report, &rio));
+	TEST_ASSERT_EQUAL_INT(0, scan_add_items(&rio, &names));
+	TEST_ASSERT_EQUAL_INT(0, config_parse("f", rio->text, rio->len, &report, &config));
+	TEST_ASSERT_EQUAL_UINT(0, config->allow_count);
+	TEST_ASSERT_EQUAL_UINT(names.count, config->item_count);
+	TEST_ASSERT_EQUAL_STRING_LEN(path, config->items[0].path, strlen(path));
+	config_free(config);
+	rio_free(rio);
+	scan_names_free(&names);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_each_case_is_decided_as_the_table_says);
 	RUN_TEST(test_what_is_replaced_knows_by_what);
+	RUN_TEST(test_a_path_of_a_server_is_one_text_of_the_configuration);
 	return UNITY_END();
 }

@@ -142,8 +142,9 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 {
 	const char *name = choose_name(names, device, property, element);
 	bool named = strncmp(name, device->alias, strlen(device->alias)) == 0;
-	char *described = named ? NULL : rio_quote(device->alias);
+	char *described = named ? NULL : rio_quote(device->alias), *path = NULL;
 	char rate[48] = "", init[160] = "";
+	char whole[sizeof(device->path) + sizeof(property->name) + 3];
 
 	if (property->per_factor)
 		snprintf(rate, sizeof(rate), "  PerFactor               %u\n",
@@ -153,11 +154,17 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 		         "  InitValue               \"%s\"\n"
 		         "  Start                   last\n",
 		         value);
+	/* a server may call a coupler as it likes; other paths stay in one line */
+	snprintf(whole, sizeof(whole), "\"%s/%s\"", device->path, property->name);
+	if (strpbrk(device->path, "\"\\")) {
+		whole[strlen(whole) - 1] = '\0';
+		path = ctl_need(rio_quote(whole + 1));
+	}
 	fprintf(names->items,
 	        "%s# %s%s%s%s%s\n"
 	        "Item {\n"
 	        "  Name                    \"%s\"\n"
-	        "  Path                    \"%s/%s\"\n"
+	        "  Path                    %s\n"
 	        "  Type                    \"%s\"\n"
 	        "  IO                      \"%s\"\n"
 	        "%s%s%s%s%s"
@@ -166,11 +173,12 @@ static void make_item(struct scan_names *names, const struct scan_device *device
 	        device->location[0] ? " on " : "", device->location,
 	        device->simulated ? " (simulated)" : "",
 	        property->output ? "; begins as it was found, later as it was last" : "", name,
-	        device->path, property->name, value_type_name(property->type),
+	        path ? path : whole, value_type_name(property->type),
 	        property->output ? "output" : "input",
 	        described ? "  Description             " : "", described ? described : "",
 	        described ? "\n" : "", rate, init);
 	free(described);
+	free(path);
 }
 
 /* Print what gets no item; it becomes a comment of the configuration, too. */
