@@ -228,6 +228,15 @@ static void share_lock(int fd, const char *lock)
 	close(folder);
 }
 
+/* Is that the file of the path? */
+static bool is_at(int fd, const char *path)
+{
+	struct stat held, named;
+
+	return fstat(fd, &held) == 0 && lstat(path, &named) == 0 && held.st_ino == named.st_ino &&
+	       held.st_dev == named.st_dev;
+}
+
 /*
  * The file, made if need be, with the lock; -EAGAIN: another has it, is making it, or has just
  * removed it. Only what was made here changes its owner: a name that is there may be a link to
@@ -235,7 +244,6 @@ static void share_lock(int fd, const char *lock)
  */
 static int try_lock(const char *path)
 {
-	struct stat held, named;
 	int fd = open(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
 
 	if (fd >= 0)
@@ -247,8 +255,7 @@ static int try_lock(const char *path)
 
 		return err == ENOENT || (err == EACCES && access(path, F_OK) == 0) ? -EAGAIN : -err;
 	}
-	if (flock(fd, LOCK_EX | LOCK_NB) == 0 && fstat(fd, &held) == 0 && stat(path, &named) == 0 &&
-	    held.st_ino == named.st_ino && held.st_dev == named.st_dev)
+	if (flock(fd, LOCK_EX | LOCK_NB) == 0 && is_at(fd, path))
 		return fd;
 	close(fd);
 	return -EAGAIN;
@@ -273,7 +280,8 @@ void replace_unlock(const char *file, int fd)
 {
 	char path[LOCK_PATH];
 
-	if (lock_path(file, path) == 0)
+	/* the link may lead elsewhere by now, where another has its lock */
+	if (lock_path(file, path) == 0 && is_at(fd, path))
 		unlink(path);
 	close(fd);
 }

@@ -436,6 +436,30 @@ static void test_a_symbolic_link_stays_and_its_target_is_replaced(void)
 	TEST_ASSERT_EQUAL_INT(-ENOENT, replace_file(link, "x", 1));
 }
 
+/* Nor is any other file that has such a name there. */
+static void test_a_link_that_leads_elsewhere_takes_no_lock_from_another(void)
+{
+	char link[120], other[120], lock[140];
+	int first, second;
+
+	snprintf(link, sizeof(link), "%s/link.rio", directory);
+	snprintf(other, sizeof(other), "%s/other.rio", directory);
+	snprintf(lock, sizeof(lock), "%s.lock", other);
+	TEST_ASSERT_EQUAL_INT(0, replace_file(file, "a", 1));
+	TEST_ASSERT_EQUAL_INT(0, replace_file(other, "b", 1));
+	TEST_ASSERT_EQUAL_INT(0, symlink(file, link));
+	first = replace_lock(link);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, first);
+	TEST_ASSERT_EQUAL_INT(0, unlink(link));
+	TEST_ASSERT_EQUAL_INT(0, symlink(other, link));
+	second = replace_lock(link);
+	TEST_ASSERT_GREATER_OR_EQUAL_INT(0, second);
+	replace_unlock(link, first);
+	TEST_ASSERT_EQUAL_INT(0, access(lock, F_OK));
+	replace_unlock(link, second);
+	TEST_ASSERT_EQUAL_INT(-1, access(lock, F_OK));
+}
+
 static void test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over(void)
 {
 	struct rlimit limit, small;
@@ -785,6 +809,7 @@ int main(void)
 	RUN_TEST(test_a_target_or_a_bus_that_is_there_already_never_reaches_the_file);
 	RUN_TEST(test_a_replaced_file_keeps_its_mode_and_is_a_new_one);
 	RUN_TEST(test_a_symbolic_link_stays_and_its_target_is_replaced);
+	RUN_TEST(test_a_link_that_leads_elsewhere_takes_no_lock_from_another);
 	RUN_TEST(test_when_writing_fails_the_old_file_stays_and_nothing_is_left_over);
 	RUN_TEST(test_only_plain_files_are_replaced);
 	RUN_TEST(test_only_who_may_replace_the_file_can_open_its_lock);
