@@ -31,7 +31,7 @@ struct kept {
 	int64_t value;
 	char *text;
 	uint8_t quality, type;
-	bool known;
+	bool known, gap; /* gap: a row says that it is not known, since the last value */
 };
 struct history_writer {
 	struct history_store store;
@@ -134,10 +134,14 @@ static void writer_forget(struct history_writer *w, uint32_t key, int64_t us, ui
 {
 	struct kept *kept = &w->kept[key];
 
+	/* gaps are never deleted */
+	if (!kept->known && kept->gap)
+		return;
 	if (us < kept->us)
 		us = kept->us;
 	kept->us = us;
 	kept->known = false;
+	kept->gap = true;
 	writer_add(w,
 	           (struct history_row){.kind = ROW_GAP, .us = us, .key = key, .reason = reason});
 }
@@ -268,6 +272,7 @@ void history_writer_value(struct history_writer *w, uint32_t signal, int64_t mea
 	kept->value = value;
 	kept->quality = quality;
 	kept->known = true;
+	kept->gap = false;
 	add_value_row(w, w->table[signal], us);
 }
 

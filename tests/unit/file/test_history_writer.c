@@ -520,6 +520,25 @@ static void test_what_was_measured_before_a_repeated_value_is_not_undone_by_it(v
 	expect_gap(2, repeated, OWS_HISTORY_OVERRUN);
 }
 
+/* As each reload does with the signals that are not recorded. */
+static void test_what_is_not_known_is_said_once(void)
+{
+	past_begin(&past, 0, PAST_NOON, true);
+	past_room(&past, 5 * PAST_S, 1);
+	for (int s = 10; s < 20; s++)
+		for (int signal = PAST_ROOM; signal <= PAST_LAMP; signal++)
+			history_writer_forget(past.writer, (uint32_t)signal, s * PAST_S,
+			                      OWS_HISTORY_NOT_ASKED);
+	past_room(&past, 30 * PAST_S, 2);
+	history_writer_forget(past.writer, PAST_ROOM, 40 * PAST_S, OWS_HISTORY_NOT_ASKED);
+	past_end(&past, 50 * PAST_S);
+	TEST_ASSERT_EQUAL_INT(4, count_of(PAST_ROOM));
+	expect_gap(1, 10 * PAST_S, OWS_HISTORY_NOT_ASKED);
+	expect(2, 30 * PAST_S, 2);
+	expect_gap(3, 40 * PAST_S, OWS_HISTORY_NOT_ASKED);
+	TEST_ASSERT_EQUAL_INT64(3, past_ask(&past, "select count(*) from gap where signal > 0"));
+}
+
 /* A reload of the largest table, and one of another. */
 static void test_a_large_table_is_the_same_after_a_reload(void)
 {
@@ -1224,6 +1243,7 @@ int main(void)
 	RUN_TEST(test_the_journal_is_kept_as_long_as_minutes);
 	RUN_TEST(test_a_value_that_was_measured_before_the_last_one_comes_after_it);
 	RUN_TEST(test_what_was_measured_before_a_repeated_value_is_not_undone_by_it);
+	RUN_TEST(test_what_is_not_known_is_said_once);
 	RUN_TEST(test_a_large_table_is_the_same_after_a_reload);
 	RUN_TEST(test_a_file_that_is_too_large_loses_its_oldest_values);
 	RUN_TEST(test_without_a_directory_it_goes_on_in_memory_and_catches_up);
