@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "src/config/edit/edit.h"
 #include "src/config/edit/edit_block.h"
@@ -117,7 +118,9 @@ static int put_setting(struct rio **rio, struct rio_node *block, enum option opt
 	char text[24], *end;
 
 	if (io_type && !rio_child(block, option_table[option].key)) {
-		bits = strtoul(io_type->value, &end, 0);
+		/* as the reader has it: 034 is 34 */
+		bits = strtoul(io_type->value, &end,
+		               strncasecmp(io_type->value, "0x", 2) ? 10 : 16);
 		if (!*end && change_bits(option, value, &bits)) {
 			snprintf(text, sizeof(text), "0x%04lX", bits);
 			return edit_put_value(rio, block, OPT_IO_TYPE, text);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "hal/owfs/path.h"
 #include "src/config/edit/edit_block.h"
@@ -99,14 +100,16 @@ static void put_type(struct json *json, const struct rio_node *item)
 {
 	const char *bits = value_of(item, OPT_IO_TYPE), *type = value_of(item, OPT_TYPE);
 	const char *io = value_of(item, OPT_IO), *uncached = value_of(item, OPT_UNCACHED);
-	unsigned long code = bits ? strtoul(bits, NULL, 0) : 0;
+	unsigned long code = bits ? strtoul(bits, NULL, strncasecmp(bits, "0x", 2) ? 10 : 16) : 0;
+	int64_t fresh = (code & IO_TYPE_UNCACHED) != 0;
 
 	if (!type && value_type_ok((int)(code & IO_TYPE_CODE)))
 		type = value_type_name((enum ows_type)(code & IO_TYPE_CODE));
 	json_string(json, "type", type);
 	json_string(json, "io", io ? io : code & IO_TYPE_OUTPUT ? "output" : "input");
-	json_bool(json, "uncached",
-	          uncached ? !strcmp(uncached, "on") : (code & IO_TYPE_UNCACHED) != 0);
+	if (uncached && value_parse(OWS_BOOL, uncached, &fresh))
+		fresh = false;
+	json_bool(json, "uncached", fresh);
 }
 
 static void put_item(struct json *json, const struct rio_node *item)

@@ -135,6 +135,10 @@ static void test_type_direction_and_uncached_go_into_io_type(void)
 	expect_text(with("0x0018", "0x0118"));
 	TEST_ASSERT_EQUAL_INT(0, set("room1", "Uncached=off"));
 	expect_text(genuine);
+	/* zeros before a number make it no octal one: this is an output */
+	parse(with("0x0022", "0034"));
+	TEST_ASSERT_EQUAL_INT(0, set("relay", "Type=bool"));
+	expect_text(with("0x0022", "0x0021"));
 }
 
 static void test_a_key_that_is_new_stands_behind_the_others(void)
