@@ -156,8 +156,7 @@ static void test_a_path_of_a_server_is_one_text_of_the_configuration(void)
 	TEST_ASSERT_TRUE(scan_device_of(path, &device));
 	scan_names_init(&names, SCAN_PROPERTIES);
 	TEST_ASSERT_TRUE(scan_make_items(&names, &device, (struct scan_choice){0}));
-	TEST_ASSERT_EQUAL_INT(0,
-	                      rio_parse("f", edit_empty, strlen(edit_empty), &report, &rio));
+	TEST_ASSERT_EQUAL_INT(0, rio_parse("f", edit_empty, strlen(edit_empty), &report, &rio));
 	TEST_ASSERT_EQUAL_INT(0, scan_add_items(&rio, &names));
 	TEST_ASSERT_EQUAL_INT(0, config_parse("f", rio->text, rio->len, &report, &config));
 	TEST_ASSERT_EQUAL_UINT(0, config->allow_count);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who gave the command in force: the origins in the image, and the journal of commands. Whose command
- * was refused.
+ * Who gave the command in force: the origins in the image, and the journal of commands. Whose
+ * command was refused.
  */
 #pragma once
 
