@@ -43,12 +43,13 @@ def fetch(*command, cwd=None):
 
 class Machine:
     name = qemu = console = port = ""
-    arguments = serial = ()
+    arguments = serial = network = ()
     append = ""
     install = "board/install-deps kernel"
     modules = """vhci-hcd i2c-tiny-usb i2c-dev wire ds2482 w1_therm w1_smem w1_ds2405 w1_ds2406
     w1_ds2408 w1_ds2413 w1_ds2423 w1_ds2430 w1_ds2431 w1_ds2433 w1_ds2438
-    w1_ds2780 w1_ds2781 w1_ds28e04 w1_ds28e17 ds2760_battery ds2490 overlay""".split()
+    w1_ds2780 w1_ds2781 w1_ds28e04 w1_ds28e17 ds2760_battery ds2490 overlay
+    virtio_pci virtio_net""".split()
 
     def kernel_package(self, cache):
         """Name and version of the package that Debian's meta package stands for."""
@@ -85,6 +86,7 @@ class Amd64(Machine):
     console, port = "ttyS0", "ttyS1"
     arguments = ("-cpu", "max", "-smp", "1", "-m", "1024", "-M", "q35")
     serial = ("-serial", "stdio")
+    network = ("-nic", "user,model=virtio-net-pci")
     # A busy host lets too few ticks through while the kernel tries its timer, which then panics
     append = "mitigations=off tsc=reliable no_timer_check"
 

@@ -28,7 +28,7 @@ READY_SECONDS = 300
 # Of each entity, with nothing in it that makes a list or a number of it
 LOOK = "{% for s in states %}{{ s.entity_id }}={{ s.state }}={{ device_id(s.entity_id) }}=" \
        "{{ state_attr(s.entity_id, 'quality') }}={{ state_attr(s.entity_id, 'event_type') }}=" \
-       "{{ state_attr(s.entity_id, 'why') }};{% endfor %}"
+       "{{ state_attr(s.entity_id, 'why') }}={{ state_attr(s.entity_id, 'unit_of_measurement') }};{% endfor %}"
 CONFIGURATION = """
 homeassistant: {{name: judge, latitude: 50, longitude: 14, elevation: 200, unit_system: metric,
                  time_zone: UTC, country: CZ}}
@@ -128,7 +128,7 @@ class HomeAssistant:
         until(self.states, READY_SECONDS, lambda: f"Home Assistant is ready: {self.process.log()[-3000:]}", step=0.2)
 
     def states(self):
-        """{entity: (state, device, quality, event, why)}"""
+        """{entity: (state, device, quality, event, why, unit)}"""
         text = self.listener.last("judge/states") or ""
         return {name: tuple(rest) for name, *rest in (e.split("=") for e in text.split(";") if e.strip())}
 

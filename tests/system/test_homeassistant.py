@@ -4,12 +4,14 @@
 unavailable there, and its commands move outputs."""
 
 import json
+import re
 import signal
+import subprocess
 
 import owsdtest
 from hajudge import HomeAssistant
-from mqtthouse import RELAY, ROOM, SENSOR, SWITCH, House, item
-from owsdtest import raw, until
+from mqtthouse import RELAY, ROOM, SENSOR, SWITCH, Broker, House, item, program
+from owsdtest import BUILD, SOURCE, raw, until
 
 ATTIC, KEY, NOTE = "28.A0B1C2000002", "01.213DDC8770E9", "2D.A0B1C2000009"
 PORTS = [f"29.A0B1C200001{n}" for n in range(4)]
@@ -151,6 +153,23 @@ def test_the_blueprint_tells_of_alarms_and_of_what_is_lost(scene):
     house.face.kill()
     tells("pi7 is lost")
     assert not [t for _, _, t in judge.listener.all("judge/told") if t.startswith(SENSOR) or "relay" in t]
+    assert not judge.complaints(), "\n".join(judge.complaints())
+
+
+def test_a_ds9490r_at_the_kernel_is_there_goes_and_comes_back(scene):
+    rig = SOURCE / "tests/kernel"
+    files = [rig / "guest" / name for name in ("lib.sh", "w1lib.sh", "usblib.sh", "usb.sim", "homeassistant.sh", "homeassistant.sim")]
+    programs = [BUILD / name for name in ("kernel/simchip", "owsd", "owsctl", "owsd-mqtt")]
+    if not programs[0].exists():
+        owsdtest.skip("the simulated adapter is not built: make kernel-programs")
+    programs += [program(name) for name in ("mosquitto_pub", "mosquitto_sub")]
+    broker = Broker(scene)
+    judge = HomeAssistant(scene, broker.port)
+    done = subprocess.run([rig / "boot", "--or-skip", "--time", "600", "--broker", str(broker.port), *(f"--program={p}" for p in programs),
+                           *(f"--file={f}" for f in files), "homeassistant"], stdout=subprocess.PIPE, text=True, check=False)
+    if skipped := re.search(r"^skip - (.*)", done.stdout, re.M):
+        owsdtest.skip(skipped[1])
+    assert done.returncode == 0, f"{done.stdout}\n{judge.states()}"
     assert not judge.complaints(), "\n".join(judge.complaints())
 
 

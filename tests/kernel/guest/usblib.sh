@@ -32,10 +32,10 @@ stat_of() {
 	sim stats | sed -n "s/^$1 //p"
 }
 
-# Plug it in, and have the kernel's driver take it
+# [SCENARIO]: plug it in, and have the kernel's driver take it
 plug_usb() {
 	modprobe vhci-hcd
-	simchip -u /rig/usb.sim >>/tmp/log/simchip 2>&1 &
+	simchip -u /rig/${1:-usb.sim} >>/tmp/log/simchip 2>&1 &
 	if ! within 60 one_adapter; then
 		not_ok "the simulated adapter is plugged in" "no device 04fa:2490"
 		finish
