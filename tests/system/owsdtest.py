@@ -23,6 +23,7 @@ import contextlib
 import itertools
 import os
 import pathlib
+import queue
 import random
 import shutil
 import signal
@@ -31,6 +32,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import traceback
 
@@ -346,19 +348,59 @@ class Owserver(Program):
         return sorted("/" + n for n in names if len(n) == 15 and n[2] == ".")
 
 
+class Manager:
+    """The service manager's end: takes at once what a program tells, as systemd does, while that runs.
+    Of what a socket has: what the cases want."""
+
+    def __init__(self, address):
+        self.address = address
+        self.told = queue.SimpleQueue()
+        self.timeout = None
+        self.end = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        self.end.bind(address)
+        os.chmod(address, 0o777)  # owsd may run as another user
+
+    def begin(self, running):
+        threading.Thread(target=self._take, args=(running,), daemon=True).start()
+
+    def _take(self, running):
+        self.end.settimeout(0.5)
+        goes_on = True
+        while goes_on:
+            goes_on = running()
+            with contextlib.suppress(socket.timeout):
+                while True:
+                    self.told.put(self.end.recv(4096))
+        self.end.close()
+
+    def getsockname(self):
+        return self.address
+
+    def settimeout(self, seconds):
+        self.timeout = seconds
+
+    def setblocking(self, blocks):
+        self.timeout = None if blocks else 0
+
+    def recv(self, _size):
+        try:
+            return self.told.get(self.timeout != 0, self.timeout)
+        except queue.Empty:
+            raise (socket.timeout if self.timeout else BlockingIOError)() from None
+
+
 class Owsd(Program):
     def __init__(self, scene, config, name, options, env, prefix):
         self.name = name
         self.config = config
-        self.notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         address = str(scene.path / f"n{next(_serial)}")
-        self.notify.bind(address)
-        os.chmod(address, 0o777)  # owsd may run as another user
+        self.notify = Manager(address)
         program = with_sim(OWSD, config or "", *options, cwd=scene.path)
         need(program)
         super().__init__(scene, [*prefix, program, "-n", name, *(["-c", config] if config else []),
                                  *options],
                          {"NOTIFY_SOCKET": address, **(env or {})})
+        self.notify.begin(self.running)
 
     def ready(self, seconds=None):
         """Wait until it says READY=1 to the service manager, no longer than the seconds; without

@@ -204,7 +204,7 @@ static void name_targets(const struct config *config, char *text, size_t size)
 
 /* What `systemctl status` shows. */
 struct shown {
-	const struct notify *notify;
+	struct notify *notify;
 	char state[600];
 	unsigned absent; /* of host_absent() */
 	char why[LISTEN_WHY_MAX];
@@ -316,7 +316,7 @@ static bool supervise(struct host *host, const struct arguments *a, struct insta
                       struct log *log, struct shown *shown, int prefix,
                       struct unix_signals *signals)
 {
-	const struct notify *notify = shown->notify;
+	struct notify *notify = shown->notify;
 	const int bells[] = {log_bell(log), control_asked_bell(host_control(host))};
 	int64_t fed_ns = 0, reload_ns = 0, wait_ns = SUPERVISE_NS, drop_ns = ows_now() + SETTLED_NS,
 		look_ns = 0;

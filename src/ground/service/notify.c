@@ -76,20 +76,26 @@ void notify_close(struct notify *notify)
 	notify->fd = -1;
 }
 
-static int send_text(const struct notify *notify, const char *text, int flags)
+static int send_text(struct notify *notify, const char *text, int flags)
 {
 	ssize_t sent = 0;
 
 	if (notify->fd < 0)
 		return 0;
+	if (notify->deaf)
+		flags |= MSG_DONTWAIT;
 	do
 		sent = sendto(notify->fd, text, strlen(text), flags | MSG_NOSIGNAL,
 		              (const struct sockaddr *)&notify->address, notify->len);
 	while (sent < 0 && errno == EINTR);
+	if (sent >= 0)
+		notify->deaf = false;
+	else if (!(flags & MSG_DONTWAIT))
+		notify->deaf = true;
 	return sent < 0 ? -errno : 0;
 }
 
-int notify_send(const struct notify *notify, enum notify_news news)
+int notify_send(struct notify *notify, enum notify_news news)
 {
 	static const char *const texts[] = {
 		[NOTIFY_READY] = "READY=1",
@@ -108,7 +114,7 @@ int notify_send(const struct notify *notify, enum notify_news news)
 	return send_text(notify, text, 0);
 }
 
-int notify_status(const struct notify *notify, const char *format, ...)
+int notify_status(struct notify *notify, const char *format, ...)
 {
 	char text[7 + 256] = "STATUS=";
 	va_list args;

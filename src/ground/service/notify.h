@@ -8,12 +8,14 @@
  */
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 
 struct notify {
-	int fd; /* -1: there is no service manager */
+	int fd;    /* -1: there is no service manager */
+	bool deaf; /* it took nothing in the time that is waited for it */
 	socklen_t len;
 	struct sockaddr_un address;
 	int64_t watchdog_ns; /* send NOTIFY_WATCHDOG at least twice in this time; 0: not wanted */
@@ -36,9 +38,10 @@ void notify_close(struct notify *notify);
 
 /*
  * Returns 0, or the negative errno of sending, which the caller may ignore. All but NOTIFY_WATCHDOG
- * wait for room up to 5 s, for they are told once: a unit whose NOTIFY_READY is lost never runs.
+ * wait for room up to 5 s, for they are told once: a unit whose NOTIFY_READY is lost never runs. A
+ * manager that took nothing meanwhile is not waited for again until it takes something.
  */
-int notify_send(const struct notify *notify, enum notify_news news);
+int notify_send(struct notify *notify, enum notify_news news);
 /* What `systemctl status` shows; cut at 255 bytes, control characters become '?'. */
-int notify_status(const struct notify *notify, const char *format, ...)
+int notify_status(struct notify *notify, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));

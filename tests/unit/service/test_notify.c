@@ -114,8 +114,24 @@ static void test_what_is_told_once_waits_for_a_busy_manager_and_the_watchdog_doe
 	}
 	TEST_ASSERT_EQUAL_INT(0, notify_send(&notify, NOTIFY_READY));
 	TEST_ASSERT_EQUAL_INT(0, notify_status(&notify, "up"));
+	TEST_ASSERT_FALSE(notify.deaf);
 	TEST_ASSERT_EQUAL_INT(busy, waitpid(busy, &status, 0));
 	TEST_ASSERT_EQUAL_INT(0, status);
+}
+
+/* It costs its time once, until it takes something again. */
+static void test_a_manager_that_takes_nothing_is_waited_for_once(void)
+{
+	listen_on(path);
+	while (!notify_send(&notify, NOTIFY_WATCHDOG))
+		;
+	TEST_ASSERT_EQUAL_INT(-EAGAIN, notify_send(&notify, NOTIFY_READY));
+	TEST_ASSERT_TRUE(notify.deaf);
+	for (int i = 0; i < 1000; i++)
+		TEST_ASSERT_EQUAL_INT(-EAGAIN, notify_status(&notify, "%d", i));
+	TEST_ASSERT_EQUAL_STRING("WATCHDOG=1", told());
+	TEST_ASSERT_EQUAL_INT(0, notify_status(&notify, "again"));
+	TEST_ASSERT_FALSE(notify.deaf);
 }
 
 static void test_reloading_tells_the_monotonic_time(void)
@@ -230,6 +246,7 @@ int main(void)
 	RUN_TEST(test_news_arrive_at_a_path);
 	RUN_TEST(test_news_arrive_at_an_abstract_name);
 	RUN_TEST(test_what_is_told_once_waits_for_a_busy_manager_and_the_watchdog_does_not);
+	RUN_TEST(test_a_manager_that_takes_nothing_is_waited_for_once);
 	RUN_TEST(test_reloading_tells_the_monotonic_time);
 	RUN_TEST(test_a_status_cannot_smuggle_other_news_in);
 	RUN_TEST(test_a_status_is_utf8_wherever_it_is_cut);
