@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * endurance MINUTES SEED: owsd's life on the rig in real time. Time and again: some faults of the
- * chips and the wire, over each other; then quiet, until all is well; then something that happens
- * to owsd or the machine itself. At each look a value that is good is true, and nothing grows.
+ * endurance MINUTES SEED: the life of owsd and all programs beside it on the rig in real time. Time
+ * and again: some faults of the chips and the wire, over each other, and reloads; then quiet, until
+ * all is well; then something that happens to owsd, to one of the others or the machine itself. At
+ * each look a value that is good is true, and nothing grows.
  */
+#include <dirent.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -19,7 +21,9 @@
 #define FAULTS (45 * SECOND)
 #define LONGEST 40          /* s, of a fault */
 #define WELL (180 * SECOND) /* the back-off is 60 s at most, and the machine may be slow */
+#define AGAIN (40 * SECOND) /* another value, for who shows changes and has missed one */
 #define DEAD (3 * SECOND)   /* a heartbeat that stopped is noticed after 2 s */
+#define TOLD (30 * SECOND)  /* and the clients of the faces see it, on a slow machine */
 #define GROWTH 512          /* KiB that the memory of one life may differ */
 #define SAMPLES 3           /* from which a life's memory is known */
 #define SHOWN 3             /* of what is wrong in one episode */
@@ -40,9 +44,7 @@ static const char *const faults[] = {
 
 static unsigned seed, bad, shown, episodes, restarts;
 static int64_t begun, end;
-static long memory_most;
-static int descriptors;
-static unsigned samples;
+static struct life owsd_life, own_life;
 
 __attribute__((format(printf, 2, 0))) static void line(const char *what, const char *form,
                                                        va_list args)
@@ -97,7 +99,7 @@ static void look(void)
 {
 	usleep(LOOK_US); /* pace */
 	reader_look();
-	client_step();
+	faces_step();
 }
 
 static void look_until(int64_t until)
@@ -138,7 +140,7 @@ static void trouble(void)
 		if (below(3))
 			fault();
 		changes();
-		if (below(20) == 0)
+		if (below(5) == 0)
 			daemon_reload();
 		look_until(ows_now() + (1 + below(6000)) * (SECOND / 1000));
 	}
@@ -147,14 +149,17 @@ static void trouble(void)
 
 static bool becomes_well(const char *after)
 {
-	int64_t until = ows_now() + WELL;
+	int64_t since = ows_now(), until = since + WELL, next = 0;
 
-	for (int i = 0; i < INPUTS; i++)
-		truth_change(i);
-	reader_set_relays(below(16));
 	while (ows_now() < until) {
+		if (ows_now() >= next) {
+			for (int i = 0; i < INPUTS; i++)
+				truth_change(i);
+			reader_set_relays(below(16));
+			next = ows_now() + AGAIN;
+		}
 		look();
-		if (reader_all_well())
+		if (reader_all_well() && faces_tell(since))
 			return true;
 		if (!daemon_lives()) {
 			violated("owsd ended by itself after %s", after);
@@ -166,36 +171,81 @@ static bool becomes_well(const char *after)
 	return false;
 }
 
-/* When all is well: what it holds is what it held in this life. */
-static void holds(void)
+/* Resident memory in KiB; -1: cannot be told. */
+static long memory_of(pid_t pid)
 {
-	long kib = daemon_memory();
-	int fds = daemon_descriptors();
+	char path[64], line[128];
+	long kib = -1;
+	FILE *file;
 
-	for (int i = 0; i < 100 && samples && fds != descriptors; i++) {
-		look();
-		fds = daemon_descriptors();
-	}
-	if (!samples++) {
-		descriptors = fds;
-		memory_most = kib;
-	}
-	if (fds != descriptors)
-		violated("%d descriptors are open, were %d", fds, descriptors);
-	if (samples <= SAMPLES) {
-		memory_most = kib > memory_most ? kib : memory_most;
-	} else if (kib > memory_most + GROWTH) {
-		violated("memory grew from %ld to %ld KiB", memory_most, kib);
-	}
-	reader_counters();
-	remark("%.0f s: episode %u, memory %ld KiB, %d descriptors, %llu good values, client %u",
-	       (double)(ows_now() - begun) / 1e9, episodes, kib, fds,
-	       (unsigned long long)reader_checked(), client_answers());
+	snprintf(path, sizeof(path), "/proc/%d/status", (int)pid);
+	file = fopen(path, "re");
+	while (file && fgets(line, sizeof(line), file))
+		if (strncmp(line, "VmRSS:", 6) == 0)
+			kib = strtol(line + 6, NULL, 10);
+	if (file)
+		fclose(file);
+	return kib;
 }
 
-/* --- What happens to owsd itself --- */
+static int descriptors_of(pid_t pid)
+{
+	char path[64];
+	int count = -2; /* . and .. */
+	DIR *dir;
+
+	snprintf(path, sizeof(path), "/proc/%d/fd", (int)pid);
+	dir = opendir(path);
+	if (!dir)
+		return -1;
+	while (readdir(dir))
+		count++;
+	closedir(dir);
+	return count;
+}
+
+/* When all is well: what it holds is what it held in this life. */
+static void hold(const char *name, pid_t pid, struct life *life)
+{
+	long kib = memory_of(pid);
+	int fds = descriptors_of(pid);
+
+	for (int i = 0; i < 100 && life->samples && fds != life->descriptors; i++) {
+		look();
+		fds = descriptors_of(pid);
+	}
+	if (!life->samples++) {
+		life->descriptors = fds;
+		life->memory_most = kib;
+	}
+	if (fds != life->descriptors)
+		violated("%s: %d descriptors are open, were %d", name, fds, life->descriptors);
+	if (life->samples <= SAMPLES) {
+		life->memory_most = kib > life->memory_most ? kib : life->memory_most;
+	} else if (kib > life->memory_most + GROWTH) {
+		violated("%s: memory grew from %ld to %ld KiB", name, life->memory_most, kib);
+	}
+	remark("%s: memory %ld KiB, %d descriptors", name, kib, fds);
+}
+
+static void holds(void)
+{
+	remark("%.0f s: episode %u, %llu good values", (double)(ows_now() - begun) / 1e9, episodes,
+	       (unsigned long long)reader_checked());
+	while (!faces_rest(true))
+		look();
+	hold("owsd", daemon_pid(), &owsd_life);
+	hold("a program with libows", getpid(), &own_life);
+	faces_each(hold);
+	faces_rest(false);
+	reader_counters();
+}
+
+/* --- What happens to owsd, to the others and the machine --- */
 static void nothing_is_good(const char *when)
 {
+	const char *face;
+	int64_t since;
 	int which;
 
 	look_until(ows_now() + DEAD);
@@ -207,11 +257,16 @@ static void nothing_is_good(const char *when)
 		}
 		look();
 	}
+	since = ows_now();
+	while ((face = faces_good(since)) && ows_now() < since + TOLD)
+		look();
+	if (face)
+		violated("%s: a client of %s is told a good value", when, face);
 }
 
 static void restart(void)
 {
-	samples = 0;
+	owsd_life.samples = 0;
 	restarts++;
 	daemon_start();
 	truth_relays(0); /* InitValue: the reader sets and does not beat */
@@ -292,6 +347,8 @@ static const struct {
 	{"a stop", stop_it, false},
 	{"signals", signals, false},
 	{"a busy processor", busy_beside, false},
+	{"a kill of a program beside it", faces_kill, true},
+	{"a stop of a program beside it", faces_stop, false},
 };
 
 /* Its last life is the second half, so that what grows slowly is seen, too. */
@@ -324,6 +381,7 @@ int main(int argc, char **argv)
 		truth_change(i);
 	truth_relays(0);
 	daemon_start();
+	faces_start();
 	if (!reader_open()) {
 		violated("owsd shows no table");
 		return 1;
@@ -347,10 +405,7 @@ int main(int argc, char **argv)
 		passed("endurance: %u episodes, %u restarts: %llu good values in %llu looks were true",
 		       episodes, restarts, (unsigned long long)reader_checked(),
 		       (unsigned long long)reader_looks());
-	if (client_answers())
-		passed("endurance: a served client had %u true answers", client_answers());
-	else
-		violated("a served client never had an answer");
+	faces_end();
 	daemon_signal(SIGTERM);
 	if (daemon_end() == 0)
 		passed("endurance: owsd ends when it is told to");

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "src/public/ows.h"
 
@@ -36,20 +37,43 @@ bool sim_tell(const char *event);
 /* --- The daemon --- */
 void daemon_start(void);
 void daemon_signal(int number);
-/*
- * After a signal that ends it: wait, at most 60 s. Its status as of waitpid(), -1: it does not end.
- */
+/* As child_end() */
 int daemon_end(void);
 /* Exchange its file for the other one and have it read. */
 void daemon_reload(void);
 bool daemon_lives(void);
-/* Resident memory in KiB and open descriptors; -1: cannot be told. */
-long daemon_memory(void);
-int daemon_descriptors(void);
+pid_t daemon_pid(void);
 
-/* --- A client of the protocol that owsd serves: asks again and again, checks what it is told */
-void client_step(void);
-unsigned client_answers(void);
+/* --- Programs: owsd, and all that are beside it --- */
+/* In the child, which returns 0: its output goes there. */
+pid_t child(int output);
+/* After a signal that ends it: wait, at most 60 s. Status as of waitpid(), -1: it does not end. */
+int child_end(pid_t pid);
+
+/* What a process that is well holds; samples is 0 at its start. */
+struct life {
+	long memory_most;
+	int descriptors;
+	unsigned samples;
+};
+
+/* --- The faces: one table of programs, and of genuine clients that ask each again and again */
+void faces_start(void);
+/* See to those that run, and ask; a good value that a client is told has to be true. */
+void faces_step(void);
+/* Ask none from now on, or ask again. No client is there now. */
+bool faces_rest(bool rest);
+/* All that show what is there now have told a good value to who asked since then. */
+bool faces_tell(int64_t since_ns);
+/* One of them has told each who asked since then a good value, or nobody has asked; NULL: none. */
+const char *faces_good(int64_t since_ns);
+/* What happens to one after another. */
+void faces_kill(void);
+void faces_stop(void);
+/* Of each that is ours. */
+void faces_each(void (*hold)(const char *name, pid_t pid, struct life *life));
+/* Each ends when it is told to, and each client was told something. */
+void faces_end(void);
 
 /* --- The control program and reader --- */
 /* Wait for the table, at most 60 s. */

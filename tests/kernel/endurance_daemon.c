@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Starts, signals, measures and ends the owsd of the endurance run in the guest. */
-#include <dirent.h>
+/* Starts, signals and ends the owsd of the endurance run in the guest. */
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -20,8 +19,7 @@ static const char present[] = "/tmp/present.rio", *const files[] = {"/tmp/a.rio"
 static pid_t owsd = -1;
 static unsigned reloads;
 
-/* In the child, which returns 0: its output goes there. */
-static pid_t child(int output)
+pid_t child(int output)
 {
 	pid_t pid = fork();
 
@@ -62,18 +60,24 @@ void daemon_signal(int number)
 	kill(owsd, number);
 }
 
-int daemon_end(void)
+int child_end(pid_t pid)
 {
 	int status;
 
 	for (int i = 0; i < 600; i++) {
-		if (waitpid(owsd, &status, WNOHANG) == owsd) {
-			owsd = -1;
+		if (waitpid(pid, &status, WNOHANG) == pid)
 			return status;
-		}
 		usleep(100000); /* pace */
 	}
 	return -1;
+}
+
+int daemon_end(void)
+{
+	pid_t ended = owsd;
+
+	owsd = -1;
+	return child_end(ended);
 }
 
 void daemon_reload(void)
@@ -88,94 +92,7 @@ bool daemon_lives(void)
 	return owsd > 0 && waitpid(owsd, NULL, WNOHANG) == 0;
 }
 
-long daemon_memory(void)
+pid_t daemon_pid(void)
 {
-	char path[64], line[128];
-	long kib = -1;
-	FILE *file;
-
-	snprintf(path, sizeof(path), "/proc/%d/status", (int)owsd);
-	file = fopen(path, "re");
-	while (file && fgets(line, sizeof(line), file))
-		if (strncmp(line, "VmRSS:", 6) == 0)
-			kib = strtol(line + 6, NULL, 10);
-	if (file)
-		fclose(file);
-	return kib;
-}
-
-int daemon_descriptors(void)
-{
-	char path[64];
-	int count = -2; /* . and .. */
-	DIR *dir;
-
-	snprintf(path, sizeof(path), "/proc/%d/fd", (int)owsd);
-	dir = opendir(path);
-	if (!dir)
-		return -1;
-	while (readdir(dir))
-		count++;
-	closedir(dir);
-	return count;
-}
-
-/* --- The served client --- */
-#define CLIENT_PERIOD (2 * SECOND)
-/* What is read while it changes may be as old as one conversion and what is queued before it */
-#define CLIENT_SLACK (4 * SECOND)
-
-static pid_t client = -1;
-static int answer_fd = -1;
-static int64_t asked_ns;
-static unsigned answers;
-
-static void ask(void)
-{
-	int ends[2];
-
-	if (ows_now() < asked_ns + CLIENT_PERIOD || pipe2(ends, O_CLOEXEC))
-		return;
-	asked_ns = ows_now();
-	client = child(ends[1]);
-	if (client == 0) {
-		execlp("owsctl", "owsctl", "-t", SERVED, "read",
-		       "/uncached/28.A0B1C2000028/temperature12", NULL);
-		_exit(127);
-	}
-	close(ends[1]);
-	answer_fd = ends[0];
-}
-
-void client_step(void)
-{
-	char text[256];
-	ssize_t got;
-	int status;
-
-	if (client < 0) {
-		ask();
-		return;
-	}
-	if (waitpid(client, &status, WNOHANG) != client) {
-		if (ows_now() > asked_ns + 60 * SECOND) {
-			violated("a client got no answer and no error within a minute");
-			kill(client, SIGKILL);
-		}
-		return;
-	}
-	got = read(answer_fd, text, sizeof(text) - 1);
-	text[got > 0 ? got : 0] = '\0';
-	close(answer_fd);
-	client = -1;
-	if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-		return; /* an error is an answer that can be trusted */
-	answers++;
-	if (!truth_between(WARM, strtod(text, NULL), asked_ns - CLIENT_SLACK, ows_now()))
-		violated("a client was told %s", text);
-}
-
-unsigned client_answers(void)
-{
-	return answers;
+	return owsd;
 }

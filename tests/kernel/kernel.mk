@@ -8,7 +8,7 @@ RIG_FRONT   := $(B)/tests/kernel/vhci.o $(B)/tests/kernel/usbip.o $(B)/tests/ker
                $(B)/tests/kernel/control.o
 RIG_OURS    := $(B)/kernel/simchip $(B)/kernel/owdump $(B)/kernel/busdump $(B)/kernel/owwalk $(PROGRAMS)
 ENDURANCE   := $(B)/kernel/endurance
-RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer curl mosquitto mosquitto_pub mosquitto_sub,\
+RIG_PEERS    = $(foreach p,owserver i2cdetect i2cget i2cset i2ctransfer curl mosquitto mosquitto_pub mosquitto_sub mbpoll,\
                  $(shell PATH="$$PATH:/usr/sbin" command -v $(p))) $(B)/kernel/apparmor_parser
 RIG_GUEST   := $(filter-out %/init,$(wildcard tests/kernel/guest/*)) docs/examples/sensors.table
 # The suite addon alone has these
@@ -34,7 +34,7 @@ $(B)/kernel/owwalk: $(B)/tests/kernel/owwalk.o $(B)/tests/bench/walk.o $(B)/test
 	$(call link)
 
 $(ENDURANCE): $(patsubst %,$(B)/tests/kernel/%.o,endurance endurance_truth endurance_daemon \
-              endurance_reader control) $(B)/core.a $(B)/with/ld
+              endurance_faces endurance_reader control) $(B)/core.a $(B)/with/ld
 	$(call link)
 
 kernel-programs: all $(RIG_OURS)
@@ -69,10 +69,10 @@ bench-kernel:
 	@echo $(SHARE) >$(B)/kernel/share/devices-share
 	@$(call rig,$(or $(SUITES),bench devices)) --file $(B)/kernel/share/devices-share
 
-# owsd's life in real time: MINUTES=60 SEED=1. Its end is within two minutes of that
+# The life of owsd and all programs beside it in real time: MINUTES=60 SEED=1. Its end is within two minutes of that
 MINUTES ?= 60
 endurance-kernel:
-	@sh board/install-deps build kernel $(if $(OR_SKIP),|| true)
+	@sh board/install-deps build kernel broker addon modbus $(if $(OR_SKIP),|| true)
 	@$(MAKE) --no-print-directory kernel-programs $(ENDURANCE)
 	@mkdir -p $(B)/kernel/minutes
 	@echo $(MINUTES) $(or $(SEED),1) >$(B)/kernel/minutes/endurance
