@@ -16,23 +16,32 @@
 #define LEAST_US (7 * DAY_US) /* stays, however little room others have */
 #define ROWS 20000            /* of each table with a commit: far more than come */
 
-/* The oldest rows before an id. */
-static int delete_before(sqlite3 *db, const char *table, int64_t before)
+/* The oldest rows whose column `id` is before that. */
+static int delete_before(sqlite3 *db, const char *table, const char *id, int64_t before)
 {
-	char text[160];
+	char text[192];
 	sqlite3_stmt *statement;
 	int err;
 
 	sqlite3_snprintf(sizeof(text), text,
-	                 "delete from %s where id in"
-	                 " (select id from %s where id < ? order by id limit %d)",
-	                 table, table, ROWS);
+	                 "delete from %s where %s in"
+	                 " (select %s from %s where %s < ? order by %s limit %d)",
+	                 table, id, id, table, id, id, ROWS);
 	err = sql_errno(db, sqlite3_prepare_v2(db, text, -1, &statement, NULL));
 	if (err)
 		return err;
 	err = sql_run(statement, "i", before);
 	sqlite3_finalize(statement);
 	return err;
+}
+
+/* As long as the journal, which shows them; but no value holds across one that is gone. */
+static int delete_gaps(sqlite3 *db, int64_t before)
+{
+	int64_t value = INT64_MAX;
+	int got = sql_ask(db, "select min(id) from raw", &value);
+
+	return got < 0 ? got : delete_before(db, "gap", "start", value < before ? value : before);
 }
 
 static int64_t oldest_kept(int64_t last_id, uint32_t days)
@@ -92,12 +101,14 @@ int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *direct
 		    minutes < last_id - LEAST_US)
 			minutes = last_id - LEAST_US;
 	}
-	err = raw > 0 ? delete_before(db, "raw", raw) : 0;
+	err = raw > 0 ? delete_before(db, "raw", "id", raw) : 0;
 	if (!err && minutes > 0)
-		err = delete_before(db, "minute", minutes / MINUTE_US << 16);
+		err = delete_before(db, "minute", "id", minutes / MINUTE_US << 16);
 	if (!err && minutes > 0)
-		err = delete_before(db, "event", minutes);
+		err = delete_before(db, "event", "id", minutes);
+	if (!err && minutes > 0)
+		err = delete_gaps(db, minutes);
 	if (!err && hours > 0)
-		err = delete_before(db, "hour", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
+		err = delete_before(db, "hour", "id", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
 	return err;
 }

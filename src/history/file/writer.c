@@ -134,7 +134,7 @@ static void writer_forget(struct history_writer *w, uint32_t key, int64_t us, ui
 {
 	struct kept *kept = &w->kept[key];
 
-	/* gaps are never deleted */
+	/* a gap is deleted after all values before it */
 	if (!kept->known && kept->gap)
 		return;
 	if (us < kept->us)

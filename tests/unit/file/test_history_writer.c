@@ -489,6 +489,32 @@ static void test_the_journal_is_kept_as_long_as_minutes(void)
 	TEST_ASSERT_EQUAL_INT64(3, past_ask(&past, "select count(*) from event where kind = 7"));
 }
 
+/* A signal that is known no more each day, and one whose values are older than the last gap. */
+static void test_a_gap_is_kept_as_long_as_the_journal_and_all_values_before_it(void)
+{
+	past.options.flush_ns = 1800 * PAST_S;
+	past.options.keep.days = 1;
+	past.options.keep.minutes = 3;
+	past_begin(&past, 0, PAST_NOON, true);
+	for (int day = 0; day < 9; day++) {
+		int64_t until = (day + 1) * PAST_DAY;
+
+		past_lamp(&past, until - PAST_DAY / 2, day & 1);
+		days(day, day + 1);
+		history_writer_forget(past.writer, PAST_LAMP, until, OWS_HISTORY_OVERRUN);
+	}
+	past_end(&past, 9 * PAST_DAY);
+	TEST_ASSERT_EQUAL_INT64(4, past_ask(&past, "select count(*) from gap where signal <> 0"));
+	/* values for ever: each of their gaps too */
+	past.options.keep.days = 0;
+	past_begin(&past, 9 * PAST_DAY, PAST_NOON, true);
+	days(9, 12);
+	past_end(&past, 12 * PAST_DAY);
+	TEST_ASSERT_EQUAL_INT64(0, past_ask(&past, "select count(*) from gap where start <"
+	                                           " (select min(id) from raw)"));
+	TEST_ASSERT_GREATER_THAN_INT64(0, past_ask(&past, "select count(*) from gap"));
+}
+
 static void test_a_value_that_was_measured_before_the_last_one_comes_after_it(void)
 {
 	past_begin(&past, 0, PAST_NOON, true);
@@ -1241,6 +1267,7 @@ int main(void)
 	RUN_TEST(test_the_log_of_commits_has_its_size_from_the_begin);
 	RUN_TEST(test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever);
 	RUN_TEST(test_the_journal_is_kept_as_long_as_minutes);
+	RUN_TEST(test_a_gap_is_kept_as_long_as_the_journal_and_all_values_before_it);
 	RUN_TEST(test_a_value_that_was_measured_before_the_last_one_comes_after_it);
 	RUN_TEST(test_what_was_measured_before_a_repeated_value_is_not_undone_by_it);
 	RUN_TEST(test_what_is_not_known_is_said_once);
