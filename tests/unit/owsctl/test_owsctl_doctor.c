@@ -268,7 +268,8 @@ static void test_a_command_is_run_without_a_shell(void)
 {
 	static const char *const says[] = {"echo", "$HOME", NULL}, *const fails[] = {"false", NULL},
 				 *const absent[] = {"/nowhere/program", NULL},
-				 *const hangs[] = {"sleep", "600", NULL};
+				 *const hangs[] = {"sleep", "600", NULL},
+				 *const closes[] = {"sh", "-c", "exec sleep 600 >&-", NULL};
 	char text[64], small[4];
 
 	TEST_ASSERT_TRUE(command_output(says, INT64_MAX, text, sizeof(text)));
@@ -276,6 +277,7 @@ static void test_a_command_is_run_without_a_shell(void)
 	TEST_ASSERT_FALSE(command_output(fails, INT64_MAX, text, sizeof(text)));
 	TEST_ASSERT_FALSE(command_output(absent, INT64_MAX, text, sizeof(text)));
 	TEST_ASSERT_FALSE(command_output(hangs, ows_now() + 200 * NS_PER_MS, text, sizeof(text)));
+	TEST_ASSERT_FALSE(command_output(closes, ows_now() + 200 * NS_PER_MS, text, sizeof(text)));
 	command_output(says, INT64_MAX, small, sizeof(small));
 	TEST_ASSERT_LESS_THAN_size_t(sizeof(small), strlen(small));
 	TEST_ASSERT_EQUAL(0, command_line("true beyond", 4));

@@ -8,20 +8,32 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "hal/base/time.h"
 #include "src/ground/service/spawn.h"
 #include "src/public/ows.h"
 #include "src/tool/owsctl/ctl.h"
 #include "src/tool/owsctl/machine/command.h"
 
-static bool ended_well(pid_t pid)
+/* Killed if it runs longer than until then. */
+static bool ended_well(pid_t pid, int64_t until_ns)
 {
+	const struct timespec pause = {.tv_nsec = 5 * NS_PER_MS};
 	int status = 0;
+	pid_t ended;
 
-	while (waitpid(pid, &status, 0) < 0 && errno == EINTR)
-		;
-	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+	while ((ended = waitpid(pid, &status, until_ns == INT64_MAX ? 0 : WNOHANG)) <= 0 &&
+	       (ended == 0 || errno == EINTR)) {
+		if (ended == 0 && ows_now() >= until_ns) {
+			kill(pid, SIGKILL);
+			until_ns = INT64_MAX;
+		} else if (ended == 0) {
+			nanosleep(&pause, NULL);
+		}
+	}
+	return ended == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 bool command_output(const char *const words[], int64_t until_ns, char *text, size_t size)
@@ -42,10 +54,8 @@ bool command_output(const char *const words[], int64_t until_ns, char *text, siz
 	while (!err && n > 0 && len < size - 1) {
 		struct pollfd out = {.fd = ends[0], .events = POLLIN};
 
-		if (ows_now() >= until_ns) {
-			kill(pid, SIGKILL);
+		if (ows_now() >= until_ns)
 			break;
-		}
 		if (poll(&out, 1, 100) <= 0)
 			continue;
 		n = read(ends[0], text + len, size - 1 - len);
@@ -53,7 +63,7 @@ bool command_output(const char *const words[], int64_t until_ns, char *text, siz
 	}
 	close(ends[0]);
 	text[len] = '\0';
-	if (!err && ended_well(pid))
+	if (!err && ended_well(pid, until_ns))
 		return true;
 	text[0] = '\0';
 	return false;
@@ -76,7 +86,7 @@ int command_run(const char *const words[], bool dry)
 	err = spawn_begin(&spawn, &pid);
 	if (err)
 		ctl_fail("%s: %s", words[0], strerror(-err));
-	else if (ended_well(pid))
+	else if (ended_well(pid, INT64_MAX))
 		return 0;
 	else
 		ctl_fail("%s has failed", words[0]);

@@ -9,8 +9,8 @@
 #define COMMAND_WORDS 48
 
 /*
- * Run it, and take what it writes to stdout. False: it cannot run, fails, or has not ended its
- * output by then and is killed; text is "" then.
+ * Run it, and take what it writes to stdout. False: it cannot run, fails, or has not ended by
+ * then and is killed; text is "" then.
  */
 bool command_output(const char *const words[], int64_t until_ns, char *text, size_t size);
 /*
