@@ -6,8 +6,10 @@
  */
 #include <errno.h>
 #include <getopt.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "src/config/edit/rio_write.h"
 #include "src/config/read/config.h"
 #include "src/config/read/load.h"
 #include "src/tool/owsctl/modbus_map.h"
@@ -53,14 +55,17 @@ static struct form form_of(enum ows_type type)
 
 static void print_item(const char *name, unsigned address, unsigned type, unsigned count)
 {
+	char *quoted = ctl_need(rio_quote(name));
+
 	printf("  Item {\n"
-	       "    Name                    \"%s\"\n"
+	       "    Name                    %s\n"
 	       "    SlaveAdr                0\n"
 	       "    RegisterAdr             %u\n"
 	       "    Type                    0x%08X\n"
 	       "    Count                   %u\n"
 	       "  }\n",
-	       name, address, type, count);
+	       quoted, address, type, count);
+	free(quoted);
 }
 
 static void print_signal(const struct config_item *item, unsigned place)

@@ -113,6 +113,13 @@ static void test_each_type_has_its_form_and_its_function(void)
 	}
 }
 
+static void test_a_name_is_one_text_of_the_file(void)
+{
+	TEST_ASSERT_EQUAL(CTL_DONE, converted(LISTEN, ITEM("C:\\\\", "/29.A0B1C2000004/PIO.0", "bool",
+	                                                   "input")));
+	holds(out, PRINTED("C:\\\\", "1", "0x00000200", "1"));
+}
+
 static void test_places_are_those_that_owsd_modbus_gives(void)
 {
 	write_file("map", "4 /28.A0B1C2000001/temperature\n2 /28.0000000000AA/gone\n");
@@ -176,6 +183,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_the_whole_file_is_that_of_a_master_with_one_slave);
 	RUN_TEST(test_each_type_has_its_form_and_its_function);
+	RUN_TEST(test_a_name_is_one_text_of_the_file);
 	RUN_TEST(test_places_are_those_that_owsd_modbus_gives);
 	RUN_TEST(test_what_owsd_modbus_would_not_do_is_said);
 	RUN_TEST(test_what_is_wrong_is_refused);
