@@ -3,6 +3,7 @@
 """owsd-web and the configuration: who may edit it, and what edits of a draft do."""
 
 import json
+import pathlib
 import re
 import shutil
 import socket
@@ -373,6 +374,11 @@ def test_the_page_does_not_choose_the_directory_of_its_files(scene):
         assert text != got["text"]
         refused = post(page, "config/save", 403, text=text, base=got["tag"])
         assert "Files of the block Web" in refused["error"], refused
+        before = pathlib.Path(f"{daemon.config}.before")
+        before.write_text(text)
+        refused = post(page, "config/restore", 403, base=got["tag"])
+        assert "Files of the block Web" in refused["error"], refused
+        before.unlink()
     assert fake.orders == []
     assert post(page, "config/save", text=got["text"] + "#\n", base=got["tag"])["reload"] == "none"
     fake.thread.join(20)

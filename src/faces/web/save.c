@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Has the writer save the configuration, on a worker of its own: it waits for owsd's reload. */
 #include <errno.h>
+#include <limits.h>
 #include <microhttpd.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,16 +111,30 @@ static void save_ask(struct save *save, const struct writer_order *order)
  * Would the page then serve the files of another directory? That is for who has the machine: it
  * would give away what owsd-web may read. A text with errors is the writer's to refuse.
  */
-static bool moves_files(const struct save *save, const char *text)
+static bool moves_files(const struct save *save, const char *text, size_t len)
 {
 	struct config_report silent = {0};
 	struct config *config;
 	bool moves = false;
 
-	if (config_parse("draft", text, strlen(text), &silent, &config) == 0) {
+	if (config_parse("draft", text, len, &silent, &config) == 0) {
 		moves = strcmp(config->web.files ? config->web.files : "", save->files) != 0;
 		config_free(config);
 	}
+	return moves;
+}
+
+/* The same of the file of before, which a restore would put in place. */
+static bool before_moves_files(const struct save *save)
+{
+	struct config_report silent = {0};
+	char path[PATH_MAX], *text = NULL;
+	size_t len = 0;
+	bool moves;
+
+	snprintf(path, sizeof(path), "%s.before", save->file);
+	moves = rio_read(path, &silent, &text, &len) == 0 && moves_files(save, text, len);
+	free(text);
 	return moves;
 }
 
@@ -155,7 +170,8 @@ static void save_run(struct job *job)
 		job_error(job, 413, "the text is longer than 1 MiB");
 	} else if (!save->restore && loses_bytes(save)) {
 		job_error(job, 409, DRAFT_NO_TEXT);
-	} else if (!save->restore && moves_files(save, text->text)) {
+	} else if (save->restore ? before_moves_files(save)
+	                         : moves_files(save, text->text, strlen(text->text))) {
 		job_error(job, 403,
 		          "Files of the block Web stays as owsd-web has it: change it on that "
 		          "machine, and reload");
