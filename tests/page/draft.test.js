@@ -130,6 +130,7 @@ test("a save after which the page could edit nothing is told, with the way back"
 	const web = (block) => ({...model(""), blocks: {Web: block}});
 	draft.saved = web(WEB);
 	for (const [block, words] of [[WEB, null], [{...WEB, Write: "on"}, null],
+		[{...WEB, Configure: "Yes"}, null],
 		[{...WEB, Configure: "off"}, /edit nothing more/], [undefined, /edit nothing more/],
 		[{...WEB, Listen: "0.0.0.0:1"}, /draft changes Listen /],
 		[{...WEB, Proxy: "x", Hosts: "y"}, /draft changes Hosts, Proxy /]]) {

@@ -8,7 +8,7 @@ import {problemsOf} from "./problems.js";
 import {Special} from "./special.js";
 import * as several from "./several.js";
 import {store} from "./store.js";
-import {plural, qualityWords, valueText, withUnit, wordsOf} from "./words.js";
+import {isOn, plural, qualityWords, valueText, withUnit, wordsOf} from "./words.js";
 
 const state = {query: "", group: null, selected: null, at: -1, of: 0}; // selected: at of so many
 let search, groups, count, grid, view, editor, empty, form = null, head, place, value, double, also;
@@ -209,7 +209,7 @@ function paintEditor() {
 function paintValue() {
 	const signal = store.find(state.selected);
 	const {io, keys} = draft.item(state.selected) ?? {};
-	special.show(store.unknown ? null : signal ?? null, io === "output" || keys?.Writable === "on");
+	special.show(store.unknown ? null : signal ?? null, io === "output" || isOn(keys?.Writable));
 	const now = signal ? store.value(signal) : null;
 	put(value, !signal ? "" : now === null ? qualityWords(store.quality(signal))
 		: withUnit(signal, valueText(signal, now)));

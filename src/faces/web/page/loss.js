@@ -2,7 +2,7 @@
 // What a save would take away: signals, and the editing by this page.
 import {identityOf} from "./cells.js";
 import {draft} from "./draft.js";
-import {listOf} from "./words.js";
+import {isOn, listOf} from "./words.js";
 
 const NAMED = 20;
 const DOORS = ["Listen", "Hosts", "Proxy"]; // keys of Web that say how the page is reached
@@ -38,7 +38,7 @@ export function lockout() {
 	if (!draft.editable || draft.info.edit) // owsd-web --edit
 		return "";
 	const doors = DOORS.filter((key) => had[key] !== has[key]);
-	const why = has.Configure !== "on" ? "this page can edit nothing more, and cannot put the file of "
+	const why = !isOn(has.Configure) ? "this page can edit nothing more, and cannot put the file of "
 		+ "before back: the draft has no \u201cConfigure on\u201d in its block Web"
 		: doors.length ? `this page may not be within your reach: the draft changes ${doors.join(", ")} `
 			+ "of its block Web" : "";

@@ -90,6 +90,9 @@ export const remedyOf = (code) => QUALITIES.get(code)?.[2] ?? "";
 /** What kind of chip a device is: the name of its family, else the code with which its id begins. */
 export const kindOf = ({family, device}) => family || `Family ${(device ?? "").slice(0, 2)}`;
 
+/** Is a flag of the configuration on? */
+export const isOn = (text) => /^(on|yes|true|1)$/i.test(text);
+
 /** The shape beside the words, so that no state is shown by colour alone. */
 export const SHAPES = {good: "", uncertain: "?", bad: "\u00d7", unknown: "?"};
 
