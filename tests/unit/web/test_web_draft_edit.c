@@ -84,6 +84,13 @@ static void test_the_model_has_what_stands_in_the_text(void)
 	    "\"uncached\":true,\"keys\":{\"Type\":\"word\",\"Uncached\":\"on\"}");
 }
 
+static void test_zeros_in_front_make_no_octal_number_of_io_type(void)
+{
+	parse("OwsDrv {\n  Item { Name a Path /b/c IOType 0034 Uncached yes }\n}\n");
+	show(model_json);
+	has("\"type\":\"byte\",\"io\":\"output\",\"uncached\":true,");
+}
+
 static void test_a_text_without_a_driver_has_an_empty_model(void)
 {
 	parse("");
@@ -204,6 +211,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_the_model_has_what_stands_in_the_text);
+	RUN_TEST(test_zeros_in_front_make_no_octal_number_of_io_type);
 	RUN_TEST(test_a_text_without_a_driver_has_an_empty_model);
 	RUN_TEST(test_of_a_key_that_stands_twice_the_first_counts);
 	RUN_TEST(test_a_hundred_thousand_keys_take_the_steps_of_a_sort);
