@@ -49,17 +49,24 @@ static bool open_earlier(struct earlier *from)
 	       from->base[from->pool.off + from->pool.count - 1] == '\0';
 }
 
-/* The name of a record; NULL: there is no such record. */
-static const char *earlier_name(const struct earlier *from, uint32_t record)
+/* NULL: there is no such record. */
+static const struct ows_info_entry *earlier_info(const struct earlier *from, uint32_t record)
 {
-	const struct ows_info_entry *info;
+	return record < from->infos.count ? (const void *)(from->base + from->infos.off +
+	                                                   (size_t)record * from->infos.size)
+	                                  : NULL;
+}
 
-	if (record >= from->infos.count)
-		return NULL;
-	info = (const void *)(from->base + from->infos.off + (size_t)record * from->infos.size);
-	if (info->name_off < from->pool.off || info->name_off - from->pool.off >= from->pool.count)
-		return NULL;
-	return from->base + info->name_off;
+/* A text of a record; "" if it is none. */
+static const char *earlier_text(const struct earlier *from, uint32_t off)
+{
+	return off < from->pool.off || off - from->pool.off >= from->pool.count ? ""
+	                                                                       : from->base + off;
+}
+
+static const char *earlier_identity(const struct earlier *from, const struct ows_info_entry *info)
+{
+	return earlier_text(from, info->identity_off ? info->identity_off : info->path_off);
 }
 
 /* The record of this name; 0: none. */
@@ -81,19 +88,38 @@ static uint32_t record_of(const struct image *image, const char *name)
 	return 0;
 }
 
-/* The record that follows one of the image before; by name unless that follows another. 0: none. */
+/* The record of this identity; 0: none. */
+static uint32_t record_with(const struct image *image, const char *identity)
+{
+	for (uint32_t i = 1; i < image->record_count; i++)
+		if (!strcmp(identity, image->base + image->infos[i].identity_off))
+			return i;
+	return 0;
+}
+
+/* The record that is the same signal as one of the image before; 0: none. */
+static uint32_t same(const struct image *image, const struct earlier *from, uint32_t record,
+                     const uint32_t *records)
+{
+	if (records)
+		return records[record - 1] == UINT32_MAX ? 0 : records[record - 1] + 1;
+	return record_with(image, earlier_identity(from, earlier_info(from, record)));
+}
+
+/* The record that follows one of the image before; by name unless that is another's. 0: none. */
 static uint32_t follower(const struct image *image, const struct earlier *from, uint32_t record,
                          const uint32_t *records)
 {
-	const char *name = earlier_name(from, record);
-	uint32_t named = name ? record_of(image, name) : 0;
+	const struct ows_info_entry *info = earlier_info(from, record);
+	uint32_t found = info ? same(image, from, record, records) : 0, named;
 
-	if (!name || !records)
-		return named;
-	if (records[record - 1] != UINT32_MAX)
-		return records[record - 1] + 1;
-	for (uint32_t i = 0; i + 1 < from->infos.count; i++)
-		if (records[i] != UINT32_MAX && records[i] + 1 == named)
+	if (found || !info)
+		return found;
+	named = record_of(image, earlier_text(from, info->name_off));
+	for (uint32_t i = 1; named && i < from->infos.count; i++)
+		if (records ? records[i - 1] + 1 == named
+		            : !strcmp(earlier_identity(from, earlier_info(from, i)),
+		                      image->base + image->infos[named].identity_off))
 			return 0;
 	return named;
 }

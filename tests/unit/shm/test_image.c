@@ -7,8 +7,10 @@
 
 #include "unity.h"
 
+#include "src/memory/shm/entries.h"
 #include "src/memory/shm/image.h"
 #include "src/memory/shm/reader.h"
+#include "src/memory/shm/shelves.h"
 #include "src/public/ows.h"
 
 static void *memory;
@@ -324,6 +326,59 @@ static void test_retiring_rubbish_touches_nothing(void)
 	TEST_ASSERT_EQUAL(OWS_STATE_RETIRED, image.header->state);
 }
 
+/* --- Shelves of an earlier owsd: as over a reload, by identity and then by name --------------- */
+
+static const struct image_signal plant[] = {
+	{.name = "hall", .path = "/28.1/t", .type = OWS_DOUBLE},
+	{.name = "yard", .path = "/28.2/t", .type = OWS_DOUBLE, .identity = "north"},
+	{.name = "room", .path = "/28.3/t", .type = OWS_DOUBLE},
+};
+
+/* What is shelved once these follow the plant, of which all are: records, in order; 0: none. */
+static void expect_shelves(const struct image_signal *after, uint32_t count,
+                           const uint32_t expected[3])
+{
+	const struct image_plan before_plan = {.signals = plant, .signal_count = 3},
+				plan = {.signals = after, .signal_count = count};
+	struct ows_shelf_entry entry = {.until_ns = 1};
+	void *before;
+	size_t size;
+
+	build(&before_plan);
+	before = memory;
+	size = image.header->size;
+	for (uint32_t i = 0; i < 3; i++) {
+		entry.record = i + 1;
+		image_shelf(&image, i, &entry);
+	}
+	build(&plan);
+	shelves_carry(&image, before, size, NULL);
+	for (uint32_t i = 0; i < 3; i++)
+		TEST_ASSERT_EQUAL_UINT32(expected[i], image.shelves[i].record);
+	free(before);
+	free(memory);
+	memory = NULL;
+}
+
+static void test_a_shelf_follows_its_signal_over_a_restart(void)
+{
+	static const struct image_signal others[] = {
+		/* another name, a name that was another's, another path */
+		{.name = "attic", .path = "/28.1/t", .type = OWS_DOUBLE},
+		{.name = "hall", .path = "/28.7/t", .type = OWS_DOUBLE, .identity = "north"},
+		{.name = "room", .path = "/28.9/t", .type = OWS_DOUBLE},
+	};
+	static const struct image_signal taken[] = {
+		{.name = "room", .path = "/28.1/t", .type = OWS_DOUBLE},
+		{.name = "yard", .path = "/28.2/t", .type = OWS_DOUBLE},
+	};
+
+	expect_shelves(plant, 3, (const uint32_t[]){1, 2, 3});
+	expect_shelves(others, 3, (const uint32_t[]){1, 2, 3});
+	/* room is another signal now, and yard has the identity of none */
+	expect_shelves(taken, 2, (const uint32_t[]){1, 2, 0});
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -339,5 +394,6 @@ int main(void)
 	RUN_TEST(test_texts_of_two_states_stand_apart);
 	RUN_TEST(test_check_words_are_those_of_the_documentation);
 	RUN_TEST(test_retiring_rubbish_touches_nothing);
+	RUN_TEST(test_a_shelf_follows_its_signal_over_a_restart);
 	return UNITY_END();
 }
