@@ -61,7 +61,7 @@ test("a switch is on or off, also as a number", () => {
 test("a number has the decimals of the configuration, nine at most, else seven digits", () => {
 	for (const [decimals, value, text] of [[4, 21.5, "21.5000"], [0, 21.5, "22"], [1, 3, "3.0"],
 		[20, 0.5, "0.500000000"], [-1, 21.123456789, "21.12346"], [undefined, 7, "7"],
-		[-1, 1e-9, "1e-9"], [2, -0.001, "-0.00"]])
+		[-1, 1e-9, "1e-9"], [2, -0.001, "-0.00"], [null, 7.49, "7.49"], [null, 0.43, "0.43"]])
 		assert.equal(valueText({type: "double", decimals}, value), text);
 });
 

@@ -139,7 +139,7 @@ async function entered(signal) {
 	const fault = el("p", {class: "fault", role: "alert"});
 	const field = el("input", {id: "command-value", autocomplete: "off", required: true,
 		type: "text", inputmode: signal.type === "string" ? "text" : "decimal",
-		value: now === null ? "" : valueText(signal, now)});
+		value: now ?? ""}); // with all digits: what is not touched stays
 	const slider = range && el("input", {type: "range", "aria-label": `${signal.name}, slider`,
 		min: range[0], max: range[1], step: step(signal), value: now ?? range[0],
 		oninput: () => { field.value = valueText(signal, Number(slider.value)); }});

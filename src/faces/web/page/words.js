@@ -107,7 +107,7 @@ export function valueText(signal, value) {
 		return "\u2014";
 	if (Number.isInteger(value) && !(signal.decimals > 0))
 		return String(value);
-	return signal.decimals >= 0 ? value.toFixed(Math.min(signal.decimals, 9))
+	return (signal.decimals ?? -1) >= 0 ? value.toFixed(Math.min(signal.decimals, 9))
 		: String(Number(value.toPrecision(7)));
 }
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The control of an output: what is sent, and what is said of it.
+import assert from "node:assert/strict";
+import {beforeEach, test} from "node:test";
+import {pass, server, settle} from "./browser.js";
+import "./document.js";
+
+const GOOD = 0xc0;
+let store, control, list = [];
+
+server.answers["api/info"] = () => ({now: Date.now(), since: 1, writable: true});
+server.answers["api/signals"] = () => ({generation: 1, cursor: 1, now: Date.now(), signals: list});
+
+const signal = (i, name, more) => ({i, name, type: "double", output: true, path: `/${name}`,
+	decimals: null, age: 0, quality: {code: GOOD, good: true, why: null, text: "good"}, ...more});
+const sent = () => server.asked.filter(({path}) => path === "api/set").map(({body}) => body);
+const dialog = () => document.getElementById("command");
+const field = () => document.getElementById("command-value");
+
+/* A control on the page. */
+function shown(name) {
+	const one = store.find(name), made = control(one);
+	document.body.append(made.node);
+	made.paint(store.value(one));
+	return made;
+}
+
+async function fetched(...signals) {
+	list = signals;
+	store.event("missed", {});
+	await settle();
+}
+
+beforeEach(async () => {
+	list = [signal(0, "pump", {type: "bool", value: false}), signal(1, "dose", {value: 7.49})];
+	if (!store) {
+		({store} = await import("./page/store.js"));
+		({control} = await import("./page/command.js"));
+		await store.start();
+	}
+	await fetched(...list);
+	assert.equal(store.unknown, null);
+	server.asked.length = 0;
+	server.answers["api/set"] = {result: "done"};
+});
+
+test("a switch sends the other state, and says that it was taken for some seconds", async () => {
+	const {node, result} = shown("pump");
+	node.find((one) => one.getAttribute("role") === "switch").click();
+	await settle();
+	assert.deepEqual(sent(), [{name: "pump", value: true}]);
+	assert.equal(result.textContent, "on: taken");
+	await pass(8100);
+	assert.equal(result.textContent, "");
+});
+
+test("the dialog begins with all digits, so that what is not touched stays", async () => {
+	for (const [decimals, value] of [[null, 7.49], [1, 7.4912345678]]) {
+		await fetched(signal(0, "pump", {type: "bool", value: false}), signal(1, "dose", {decimals, value}));
+		server.asked.length = 0;
+		shown("dose").node.withText("Set\u2026").click();
+		await settle();
+		assert.equal(field().value, String(value));
+		dialog().firstChild.submit();
+		await settle();
+		assert.deepEqual(sent(), [{name: "dose", value}]);
+	}
+});
