@@ -36,6 +36,13 @@ test("marks of hours stand at local midnight too, which is labelled with its day
 		/^\d+ \w{3}$/.test(label)).length, timeTicks(midnight - 40 * DAY, midnight, 900).length);
 });
 
+test("values that differ by rounding alone have few marks, not marks for ever", () => {
+	for (const [from, until] of [[21.3, 21.300000000000004], [-1e-9, -1e-9 * (1 - 2 ** -52)],
+		[1e16, 1e16 + 2], [1e308, 1e308 * (1 + 2 ** -52)], [5, 5], [0, 0]])
+		for (const height of [0, 96, 200, 400])
+			assert.ok(numberTicks(from, until, height).length <= 12, `${from} ${until} ${height}`);
+});
+
 test("marks of numbers are round, and have the digits of their step", () => {
 	assert.deepEqual(numberTicks(-0.24, 1.1, 144).map(({label}) => label), ["0.0", "0.5", "1.0"]);
 	assert.deepEqual(numberTicks(18, 72, 220).map(({label}) => label),

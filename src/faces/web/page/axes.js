@@ -38,7 +38,9 @@ export function timeTicks(from, until, width, least = 72) {
 
 /** Marks of an axis of numbers so high: [{v, label}], at least so many px apart. */
 export function numberTicks(from, until, height, least = 36) {
-	const wanted = (until - from) / Math.max(1, height) * least;
+	// no finer than numbers of that size are: else the next mark is the same one, for ever
+	const wanted = Math.max((until - from) / Math.max(1, height) * least,
+		Math.max(Math.abs(from), Math.abs(until)) * 2 ** -48);
 	const ten = 10 ** Math.floor(Math.log10(wanted));
 	const step = [1, 2, 5, 10].map((one) => one * ten).find((one) => one >= wanted * 0.999);
 	const digits = Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)));
