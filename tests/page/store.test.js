@@ -12,9 +12,9 @@ let value = 21, store, HIDDEN;
 server.answers["api/info"] = () => ({now: Date.now(), since: 1, instance: "a"});
 server.answers["api/signals"] = () => ({...list, now: Date.now(), signals: [
 	{i: 0, name: "room", type: "double", value, quality: {code: GOOD, good: true, why: null,
-		text: "good"}, age: 0},
+		text: "good"}, age: 0, alarm: null},
 	{i: 1, name: "attic", type: "double", value: null, quality: {code: ABSENT, good: false,
-		why: "no such device there", text: "device absent"}, age: null}]});
+		why: "no such device there", text: "device absent"}, age: null, alarm: null}]});
 
 /* What the page shows of the room. */
 const room = () => store.value(store.find("room"));
@@ -278,6 +278,29 @@ test("a reload that changes no signal keeps what the page had seen of them", asy
 	streams.at(-1).sends("found", {now: Date.now(), generation: ++list.generation});
 	await settle();
 	assert.equal(store.find("room"), before);
+});
+
+test("a row says how the alarms of its signal stand, also where that changes without an entry", async () => {
+	let told = 0;
+	const count = () => told++, alarm = () => store.find("room").alarm;
+	store.addEventListener("alarm", count);
+	values([0, 21, GOOD, 1, 0, "! cannot be reset"]);
+	assert.equal(alarm(), "! cannot be reset");
+	values([0, 22, GOOD, 1, 0, "! cannot be reset"]);
+	assert.equal(told, 1, "it stands as it stood");
+	values([0, 22, GOOD, 1, 0]);
+	assert.equal(alarm(), null);
+	assert.equal(told, 2);
+	store.removeEventListener("alarm", count);
+});
+
+test("a row of a bad value has its reason, which may be another one of the same quality", () => {
+	for (const why of ["no such device there", "the answer fails its checksum"]) {
+		values([0, null, ABSENT, 0, 3, null, why]);
+		assert.equal(store.find("room").why, why);
+	}
+	values([0, 21, GOOD, 1, 0]);
+	assert.equal(store.find("room").why, null);
 });
 
 test("what a cache answers again and again is not late, what nothing is heard of is", async () => {

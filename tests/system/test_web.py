@@ -20,6 +20,7 @@ import time
 
 import faulty
 import owsdtest
+import peer
 from owsdtest import BUILD, place, raw, skip, until
 from recorded import recorded
 
@@ -533,6 +534,38 @@ def test_an_alarm_is_an_event_with_its_entry(scene):
         assert page.json("/api/alarms")["alarms"][0]["why"] == "test"
         command(page, "/api/alarm", name="level", do="unshelve")
         events.until("alarm", lambda data: data["entry"]["event"] == "unshelved")
+
+
+def test_an_alarm_that_ends_without_an_entry_ends_in_a_row(scene):
+    board = {RELAY + "/sensed.BYTE": "255", RELAY + "/latch.BYTE": "8", RELAY + "/por": "0",
+             RELAY + "/set_alarm": "133331111"}
+    with peer.Peer(board) as server:
+        server.alarms = {RELAY[1:]}
+        door = item("door", RELAY + "/sensed.BYTE", "byte", Alarm=raw("on"), LatchAlarm="latch.BYTE", PorAlarm="por",
+                    SetAlarm="set_alarm=133331111", ResetLatch="latch.BYT=0")
+        daemon = scene.owsd(owsdtest.rio(server.target, [door], Period=0.05, Web=raw("{ }")))
+        page = Page(scene, daemon)
+        until(lambda: page.json("/api/info")["live"], 20, "it has found owsd")
+
+        def alarm():
+            return page.json("/api/signals")["signals"][0]["alarm"] or ""
+
+        until(lambda: "! cannot be reset" in alarm(), 30, alarm)
+        with Events(page) as events:
+            events.until("found")
+            server.values[RELAY + "/latch.BYT"] = b"0"
+            events.until("values", lambda data: any("cannot be" not in str(row[5:6]) for row in data["v"]))
+            assert "cannot be" not in alarm()
+
+
+def test_a_row_of_a_bad_value_has_its_reason(scene):
+    daemon, page = both(scene, item("attic", "/28.A0B1C2000009/temperature"))
+    until(lambda: not page.json("/api/signals")["signals"][0]["quality"]["good"], 20, "it is absent")
+    at = page.json("/api/signals")
+    why = at["signals"][0]["quality"]["why"]
+    with Events(page, after=f"{at['generation']}:1") as events:
+        data = events.until("values", lambda data: data["v"])
+        assert [row[5:] for row in data["v"]] == [[None, why]], (data, why)
 
 
 def test_trends_come_from_the_recorder(scene):

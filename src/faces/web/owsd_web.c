@@ -20,10 +20,12 @@
 #include "src/faces/web/http.h"
 #include "src/faces/web/others.h"
 #include "src/faces/web/paths.h"
+#include "src/faces/web/show.h"
 #include "src/faces/web/stream.h"
 #include "src/faces/web/web.h"
 #include "src/faces/web/wire.h"
 #include "src/ground/service/listen.h"
+#include "src/ground/signal/hash.h"
 
 /* Connections, files that are sent, what the porter has not yet taken, and a few more */
 #define DESCRIPTORS (3 * DOORS_CONNECTIONS)
@@ -302,15 +304,19 @@ static int open_web(struct face *face)
 	return 0;
 }
 
-/* A number that is another one when the signal has something else to show, its age included. */
-static uint64_t mark_of(struct ows *h, int signal, int64_t now_ns)
+/* A number that is another one when the row of the signal is, its age included. */
+static uint64_t mark_of(const struct web *web, int signal, int64_t now_ns)
 {
+	const struct show show = {.h = web->face->ows, .live = true, .ids = web->ids};
+	char words[SHOW_ALARM];
+	const char *alarm = show_alarm(&show, signal, words);
 	struct face_value value;
 	uint64_t mark;
 
-	face_value(h, signal, true, now_ns, &value);
+	face_value(show.h, signal, true, now_ns, &value);
 	mark = (face_value_print(&value.v, value.text) ^ (uint64_t)value.v.measured_ns) * MIX;
-	return (mark ^ (uint32_t)value.v.err) * MIX;
+	mark = (mark ^ (uint32_t)value.v.err) * MIX;
+	return hash_text(mark, alarm, strlen(alarm));
 }
 
 static void changes(struct face *face, const int *signals, int n)
@@ -322,7 +328,7 @@ static void changes(struct face *face, const int *signals, int n)
 	for (int i = 0; i < (signals ? n : web->recent.count); i++) {
 		int signal = signals ? signals[i] : i;
 
-		recent_change(&web->recent, signal, mark_of(face->ows, signal, now_ns), now_ns);
+		recent_change(&web->recent, signal, mark_of(web, signal, now_ns), now_ns);
 	}
 	web->pace.waits |= web->recent.newest != before;
 	owsd_web_run(web);

@@ -169,15 +169,22 @@ void show_signal(struct json *json, const struct show *show, int signal)
 
 void show_row(struct json *json, const struct show *show, int signal)
 {
+	char words[SHOW_ALARM];
+	const char *alarm = show_alarm(show, signal, words), *why;
 	struct face_value look;
 
 	face_value(show->h, signal, show->live, show->now_ns, &look);
+	why = face_value_why(&look);
 	json_array(json, NULL);
 	json_int(json, NULL, signal);
 	show_put_value(json, NULL, &look);
 	json_int(json, NULL, look.v.quality);
 	json_bool(json, NULL, look.good);
 	put_age(json, NULL, &look);
+	if (*alarm || *why)
+		put_text(json, NULL, alarm);
+	if (*why)
+		put_text(json, NULL, why);
 	json_array_end(json);
 }
 

@@ -19,7 +19,7 @@ struct show {
 
 /* An object with all that is known of the signal, but for strings that are very long. */
 void show_signal(struct json *json, const struct show *show, int signal);
-/* [signal, value, quality code, good, age] */
+/* [signal, value, quality code, good, age, alarm, why]; without what is null of the last two */
 void show_row(struct json *json, const struct show *show, int signal);
 /* value, quality, age as members: as show_signal() has them. */
 void show_value(struct json *json, const struct show *show, int signal);

@@ -187,21 +187,25 @@ class Store extends EventTarget {
 		const changed = new Set();
 		// an event that was long under way must not make its values look new
 		this.skew = Math.max(this.skew, now - Date.now());
-		for (const [i, value, code, good, age] of v) {
+		let alarms = false;
+		for (const [i, value, code, good, age, alarm = null, why = null] of v) {
 			const signal = this.signals[i]?.i === i ? this.signals[i]
 				: this.signals.find((one) => one.i === i);
 			if (!signal)
 				continue;
 			if (signal.code !== code) {
 				signal.text = qualityWords(code);
-				signal.why = null;
 				if (!good || !signal.good)
-					this.#details(); // with the list come the reason in words, and "simulated"
+					this.#details(); // "simulated" comes with the list
 			}
+			alarms ||= alarm !== signal.alarm;
+			Object.assign(signal, {alarm, why});
 			changed.add(this.#set(signal, value, code, good, age, now, true));
 		}
 		if (changed.size)
 			this.#tell("values", changed);
+		if (alarms)
+			this.#tell("alarm");
 	}
 
 	#alarm({i, alarm}) {
