@@ -39,6 +39,7 @@ class Element extends EventTarget {
 	set value(value) { this.#value = String(value); }
 	get children() { return this.childNodes.filter((one) => one instanceof Element); }
 	get firstChild() { return this.childNodes[0] ?? null; }
+	get lastChild() { return this.childNodes.at(-1) ?? null; }
 	get isConnected() { return this === document.body || Boolean(this.parentNode?.isConnected); }
 	get textContent() {
 		return this.childNodes.map((one) => one instanceof Element ? one.textContent : one).join("");

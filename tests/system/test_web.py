@@ -26,6 +26,7 @@ from recorded import recorded
 
 WEB = BUILD / "owsd-web"
 SENSOR, RELAY = "/28.A0B1C2000001", "/29.A0B1C2000004"
+DIFFERS = 0x1c
 STARS = '*"\\/<b>\u00b0'
 
 
@@ -556,6 +557,25 @@ def test_an_alarm_that_ends_without_an_entry_ends_in_a_row(scene):
             server.values[RELAY + "/latch.BYT"] = b"0"
             events.until("values", lambda data: any("cannot be" not in str(row[5:6]) for row in data["v"]))
             assert "cannot be" not in alarm()
+
+
+def test_an_output_that_reads_otherwise_is_among_the_alarms(scene):
+    with peer.Peer({RELAY + "/PIO.0": "0"}) as server:
+        pump = item("pump", RELAY + "/PIO.0", "bool", "output", ReadBack=raw("0.2"))
+        daemon = scene.owsd(owsdtest.rio(server.target, [pump], Period=0.05, Web=raw("{ Write on }")))
+        page = Page(scene, daemon)
+        until(lambda: page.json("/api/info")["live"], 20, "it has found owsd")
+        assert command(page, "/api/set", name="pump", value=True)["result"] == "taken"
+        with Events(page) as events:
+            events.until("found")
+            server.values[RELAY + "/PIO.0"] = b"0"
+            events.until("values", lambda data: data["v"] and data["v"][-1][2] == DIFFERS)
+        alarm, = page.json("/api/alarms")["alarms"]
+        told, = json.loads(scene.owsctl(daemon, "--json", "alarms").stdout)
+        assert (alarm["alarm"], alarm["state"]) == (told["alarm"], told["state"]), (alarm, told)
+        assert alarm["alarm"] == "not as commanded" and not alarm["device"], alarm
+        server.values[RELAY + "/PIO.0"] = b"1"
+        until(lambda: not page.json("/api/alarms")["alarms"], 20, "it reads as commanded")
 
 
 def test_a_row_of_a_bad_value_has_its_reason(scene):

@@ -340,8 +340,8 @@ static int id_of(struct ows *h, int signal)
 	struct ows_info info;
 
 	if (ows_info(h, signal, &info) ||
-	    (!info.alarm && isnan(info.limit_hh) && isnan(info.limit_h) && isnan(info.limit_l) &&
-	     isnan(info.limit_ll)))
+	    (!info.output && !info.alarm && isnan(info.limit_hh) && isnan(info.limit_h) &&
+	     isnan(info.limit_l) && isnan(info.limit_ll)))
 		return -1;
 	return ows_find(h, info.name);
 }

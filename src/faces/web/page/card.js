@@ -53,8 +53,8 @@ export class AlarmCard {
 	}
 
 	#buttons(open) {
-		const {name, device, state, until} = this.#alarm;
-		if (device)
+		const {name, device, alarm: kind, state, until} = this.#alarm;
+		if (device || kind === "not as commanded")
 			return [el("span", {class: "hint"}, "Ends with its cause")];
 		const button = (what, text, act, look) => action(text, act, `${what} ${name}`, {class: look,
 			disabled: !store.info?.writable, "aria-label": `${text} ${name}`});
