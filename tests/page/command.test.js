@@ -5,7 +5,7 @@ import {beforeEach, test} from "node:test";
 import {pass, server, settle} from "./browser.js";
 import "./document.js";
 
-const GOOD = 0xc0;
+const GOOD = 0xc0, DIFFERS = 0x1c;
 let store, control, list = [];
 
 server.answers["api/info"] = () => ({now: Date.now(), since: 1, writable: true});
@@ -66,3 +66,20 @@ test("the dialog begins with all digits, so that what is not touched stays", asy
 		assert.deepEqual(sent(), [{name: "dose", value}]);
 	}
 });
+
+test("a switch that reads otherwise stands at what owsd was commanded, not at what was refused here",
+	async () => {
+		server.answers["api/set"] = 403;
+		const {node, paint, result} = shown("pump"), one = store.find("pump");
+		const toggle = node.find((part) => part.getAttribute("role") === "switch");
+		toggle.click();
+		await settle();
+		assert.equal(result.textContent, "on: refused: no");
+		Object.assign(one, {code: DIFFERS, good: false, commanded: false});
+		paint(store.value(one));
+		assert.ok(!toggle.hidden && toggle.classList.contains("is-missed"));
+		assert.equal(toggle.getAttribute("aria-checked"), "false");
+		one.commanded = null;
+		paint(store.value(one));
+		assert.ok(toggle.hidden && !node.withText("Set on").hidden, "nobody knows: two buttons");
+	});

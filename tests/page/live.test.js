@@ -123,7 +123,7 @@ test("each state has its edge, and says whether somebody is needed", () => {
 		[{code: RANGE}, "uncertain", "out of range", true],
 		[{code: ABSENT}, "bad", "device absent", true],
 		[{code: STALE}, "bad", "stale, nothing for 4 min", true],
-		[{code: DIFFERS, wanted: true}, "bad", "on was set, reads off", true],
+		[{code: DIFFERS, commanded: true}, "bad", "on was set, reads off", true],
 		[{code: DIFFERS}, "bad", "not as commanded", true],
 		[{alarm: "! high"}, "alarm", "", true], [{alarm: "! high high"}, "alarm-2", "", true],
 		[{alarm: "low, acknowledged"}, "none", "", false],

@@ -303,6 +303,16 @@ test("a row of a bad value has its reason, which may be another one of the same 
 	assert.equal(store.find("room").why, null);
 });
 
+test("what an output was commanded is what owsd says, whoever it was, and ends with the difference", () => {
+	const commanded = () => store.find("room").commanded;
+	values([0, null, 0x1c, 0, 1, null, "it reads otherwise", true]);
+	assert.equal(commanded(), true);
+	values([0, null, 0x1c, 0, 1, null, "it reads otherwise", false]);
+	assert.equal(commanded(), false);
+	values([0, false, GOOD, 1, 0]);
+	assert.equal(commanded(), null);
+});
+
 test("what a cache answers again and again is not late, what nothing is heard of is", async () => {
 	const {isLate} = await import("./page/look.js");
 	Object.assign(store.find("room"), {interval: 1, gap: undefined});

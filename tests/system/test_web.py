@@ -559,7 +559,7 @@ def test_an_alarm_that_ends_without_an_entry_ends_in_a_row(scene):
             assert "cannot be" not in alarm()
 
 
-def test_an_output_that_reads_otherwise_is_among_the_alarms(scene):
+def test_an_output_that_reads_otherwise_is_among_the_alarms_with_what_was_commanded(scene):
     with peer.Peer({RELAY + "/PIO.0": "0"}) as server:
         pump = item("pump", RELAY + "/PIO.0", "bool", "output", ReadBack=raw("0.2"))
         daemon = scene.owsd(owsdtest.rio(server.target, [pump], Period=0.05, Web=raw("{ Write on }")))
@@ -569,13 +569,16 @@ def test_an_output_that_reads_otherwise_is_among_the_alarms(scene):
         with Events(page) as events:
             events.until("found")
             server.values[RELAY + "/PIO.0"] = b"0"
-            events.until("values", lambda data: data["v"] and data["v"][-1][2] == DIFFERS)
+            row = events.until("values", lambda data: data["v"] and data["v"][-1][2] == DIFFERS)["v"][-1]
+            assert row[1] is None and row[5] is None and row[6] and row[7] is True, row
         alarm, = page.json("/api/alarms")["alarms"]
         told, = json.loads(scene.owsctl(daemon, "--json", "alarms").stdout)
         assert (alarm["alarm"], alarm["state"]) == (told["alarm"], told["state"]), (alarm, told)
         assert alarm["alarm"] == "not as commanded" and not alarm["device"], alarm
+        assert page.json("/api/signals")["signals"][0]["commanded"] is True
         server.values[RELAY + "/PIO.0"] = b"1"
         until(lambda: not page.json("/api/alarms")["alarms"], 20, "it reads as commanded")
+        assert page.json("/api/signals")["signals"][0]["commanded"] is None
 
 
 def test_a_row_of_a_bad_value_has_its_reason(scene):

@@ -316,6 +316,8 @@ static uint64_t mark_of(const struct web *web, int signal, int64_t now_ns)
 	face_value(show.h, signal, true, now_ns, &value);
 	mark = (face_value_print(&value.v, value.text) ^ (uint64_t)value.v.measured_ns) * MIX;
 	mark = (mark ^ (uint32_t)value.v.err) * MIX;
+	if (show_commanded(&show, signal, &value))
+		mark = hash_text(mark, (const char *)&value.v.number, sizeof(value.v.number));
 	return hash_text(mark, alarm, strlen(alarm));
 }
 

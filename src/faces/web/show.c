@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 
 #include "hal/base/time.h"
-#include "src/faces/show/newest.h"
 #include "src/faces/show/present.h"
 #include "src/faces/show/reading.h"
 #include "src/faces/show/stats.h"
@@ -21,16 +20,22 @@
 /* Beyond it a browser would round. */
 #define NUMBER_MOST ((INT64_C(1) << 53) - 1)
 
-static void show_put_value(struct json *json, const char *key, struct face_value *look)
+static void put_number(struct json *json, const char *key, struct face_value *look)
 {
 	const char *text = face_value_text(look);
 
-	if (!look->good)
-		json_null(json, key);
-	else if (look->v.integer > NUMBER_MOST || look->v.integer < -NUMBER_MOST)
+	if (look->v.integer > NUMBER_MOST || look->v.integer < -NUMBER_MOST)
 		json_string(json, key, text);
 	else
 		reading_json_number(json, key, &look->v, text);
+}
+
+static void show_put_value(struct json *json, const char *key, struct face_value *look)
+{
+	if (look->good)
+		put_number(json, key, look);
+	else
+		json_null(json, key);
 }
 
 static void put_age(struct json *json, const char *key, const struct face_value *look)
@@ -83,6 +88,19 @@ const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALAR
 	if (standing_any(&state) || state.shelved)
 		standing_text(&state, words);
 	return words;
+}
+
+bool show_commanded(const struct show *show, int signal, struct face_value *look)
+{
+	struct ows_command command;
+
+	if (look->v.quality != OWS_Q_DIFFERS || !show->live || !show->ids ||
+	    show->ids[signal] < 0 || ows_command(show->h, show->ids[signal], &command) ||
+	    !command.given || command.number == look->v.number)
+		return false; /* the last: set again, and not read since */
+	look->v.number = command.number;
+	look->v.integer = command.integer;
+	return true;
 }
 
 static void put_all(struct json *json, struct face_value *look)
@@ -164,6 +182,10 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	put_limits(json, &info);
 	put_all(json, &look);
 	put_text(json, "alarm", show_alarm(show, signal, words));
+	if (show_commanded(show, signal, &look))
+		put_number(json, "commanded", &look);
+	else
+		json_null(json, "commanded");
 	json_object_end(json);
 }
 
@@ -185,6 +207,8 @@ void show_row(struct json *json, const struct show *show, int signal)
 		put_text(json, NULL, alarm);
 	if (*why)
 		put_text(json, NULL, why);
+	if (show_commanded(show, signal, &look)) /* it has a reason */
+		put_number(json, NULL, &look);
 	json_array_end(json);
 }
 

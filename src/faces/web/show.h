@@ -6,6 +6,7 @@
 
 #include "src/faces/modbus/map.h"
 #include "src/faces/show/json.h"
+#include "src/faces/show/newest.h"
 #include "src/public/ows.h"
 
 struct show {
@@ -13,19 +14,23 @@ struct show {
 	int64_t now_ns;
 	bool live;                /* owsd is there */
 	int64_t start_ns;         /* owsd's; 0: not known */
-	const int *ids;           /* of the signals that can have alarms; else negative */
+	const int *ids;           /* of outputs, and what can have alarms; else negative */
 	const struct map *places; /* of Modbus; NULL: none */
 };
 
 /* An object with all that is known of the signal, but for strings that are very long. */
 void show_signal(struct json *json, const struct show *show, int signal);
-/* [signal, value, quality code, good, age, alarm, why]; without what is null of the last two */
+/*
+ * [signal, value, quality code, good, age, alarm, why, commanded], without what is null at its end.
+ */
 void show_row(struct json *json, const struct show *show, int signal);
 /* value, quality, age as members: as show_signal() has them. */
 void show_value(struct json *json, const struct show *show, int signal);
 /* The words for its alarms: "! high", "" if it has none. */
 #define SHOW_ALARM 64
 const char *show_alarm(const struct show *show, int signal, char words[SHOW_ALARM]);
+/* Makes what an output reads what it was commanded. False: it does not read otherwise. */
+bool show_commanded(const struct show *show, int signal, struct face_value *look);
 /*
  * How far apart its measurements usually are, ns; 0: not known. A cache answers many times with
  * one: that is no older than usual then.

@@ -61,7 +61,7 @@ struct web {
 	const char *serves; /* whom it serves at an address; in the log */
 	int files;          /* the directory of the page; -1: there is none */
 	struct recent recent;
-	int *ids;              /* for ows_alarm_state(), of signals that can have alarms; else -1 */
+	int *ids;              /* of libows, of outputs and what can have alarms; else -1 */
 	struct others *others; /* NULL: none are named */
 	struct jobs *workers[WEB_WORKERS]; /* NULL: nobody has asked for it yet */
 	unsigned large;                    /* bodies that are large */

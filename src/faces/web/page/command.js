@@ -26,7 +26,6 @@ export function control(signal) {
 	const result = el("span", {class: "result"});
 	const send = async (value) => {
 		const text = withUnit(signal, valueText(signal, value));
-		signal.wanted = signal.type === "bool" ? value : null;
 		say(signal.name, result, "pending", `setting ${text} \u2026`);
 		node.classList.add("is-pending");
 		try {
@@ -62,7 +61,7 @@ function say(name, result, state, text) {
 
 /*
  * A switch shows what is; where that is not known it would lie, and two buttons take its place. Where
- * what this page has set is not there, it is a hollow one of what was set.
+ * it reads otherwise than it was commanded, it is a hollow one of the command.
  */
 function switchOf(signal, send) {
 	const set = async (value) => {
@@ -76,11 +75,11 @@ function switchOf(signal, send) {
 		{"aria-label": `Set ${signal.name} ${text}`}));
 	return {nodes: [toggle, off, on], paint(value) {
 		const missed = value === null && !store.unknown && signal.code === DIFFERS
-			&& typeof signal.wanted === "boolean";
+			&& typeof signal.commanded === "boolean";
 		toggle.hidden = value === null && !missed;
 		off.hidden = on.hidden = !toggle.hidden;
 		toggle.classList.toggle("is-missed", missed);
-		toggle.setAttribute("aria-checked", String(missed ? signal.wanted : Boolean(Number(value))));
+		toggle.setAttribute("aria-checked", String(missed ? signal.commanded : Boolean(Number(value))));
 	}};
 }
 

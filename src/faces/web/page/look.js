@@ -19,13 +19,13 @@ export function sinceOf({recent, measured}) {
 }
 
 function wordsOf(signal, age) {
-	const {code, wanted} = signal;
+	const {code, commanded} = signal;
 	if (code === INITIAL)
 		return "not read yet";
 	if (code === STALE)
 		return age === null ? "stale" : `stale, nothing for ${span(age)}`;
-	if (code === DIFFERS && typeof wanted === "boolean")
-		return `${wanted ? "on" : "off"} was set, reads ${wanted ? "off" : "on"}`;
+	if (code === DIFFERS && typeof commanded === "boolean")
+		return `${commanded ? "on" : "off"} was set, reads ${commanded ? "off" : "on"}`;
 	return signal.text || qualityWords(code);
 }
 

@@ -188,7 +188,7 @@ class Store extends EventTarget {
 		// an event that was long under way must not make its values look new
 		this.skew = Math.max(this.skew, now - Date.now());
 		let alarms = false;
-		for (const [i, value, code, good, age, alarm = null, why = null] of v) {
+		for (const [i, value, code, good, age, alarm = null, why = null, commanded = null] of v) {
 			const signal = this.signals[i]?.i === i ? this.signals[i]
 				: this.signals.find((one) => one.i === i);
 			if (!signal)
@@ -199,7 +199,7 @@ class Store extends EventTarget {
 					this.#details(); // "simulated" comes with the list
 			}
 			alarms ||= alarm !== signal.alarm;
-			Object.assign(signal, {alarm, why});
+			Object.assign(signal, {alarm, why, commanded});
 			changed.add(this.#set(signal, value, code, good, age, now, true));
 		}
 		if (changed.size)
