@@ -273,6 +273,22 @@ test("values that were long under way do not look new", () => {
 	assert.equal(room(), 22);
 });
 
+test("where the clock of the server goes slower, or is set back, values do not look old for long",
+	async () => {
+		const age = () => store.age(store.find("room"));
+		for (const behind of [2000, 3600000]) {
+			for (let n = 0; n < 70; n++) {
+				await pass(1000);
+				streams.at(-1).sends("values", {now: Date.now() - behind, generation: list.generation,
+					v: [[0, 21 + n, GOOD, 1, 0]]});
+			}
+			assert.ok(age() < 2, `${age()} s, ${behind} ms behind`);
+			streams.at(-1).sends("values", {now: Date.now() - behind - 4000, generation: list.generation,
+				v: [[0, 22, GOOD, 1, 0]]});
+			assert.ok(age() >= 4, "an event that was under way for long is still seen to be");
+		}
+	});
+
 test("a reload that changes no signal keeps what the page had seen of them", async () => {
 	const before = store.find("room");
 	streams.at(-1).sends("found", {now: Date.now(), generation: ++list.generation});

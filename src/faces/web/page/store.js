@@ -9,12 +9,14 @@ import {keep} from "./spark.js";
 import {UNKNOWN, qualityWords} from "./words.js";
 
 const GAP_LEAST_MS = 100; // measurements that are nearer are one, in another event
+const SURE_MS = 60000; // so long the event that came soonest says how the clocks differ
 
 class Store extends EventTarget {
 	info = null;
 	signals = [];
 	unknown = "The page has no values yet.";
 	skew = 0; // clock of the server less that of the browser, ms
+	#sure = -Infinity; // when an event said that
 	#generation = null;
 	#after = ""; // GENERATION:CURSOR of the signals; "": they were never there
 	#waiting = []; // events that came while the signals were being fetched
@@ -123,7 +125,7 @@ class Store extends EventTarget {
 			if (source !== this.#connection.source)
 				throw new Error("the connection broke meanwhile");
 			this.info = info;
-			this.skew = info.now - Date.now();
+			this.#clock(info.now, true);
 			this.#connection.works();
 			this.#take(list);
 			this.#after = `${list.generation}:${list.cursor}`;
@@ -183,10 +185,18 @@ class Store extends EventTarget {
 			keep(signal.recent, t, number, code, signal.watched);
 	}
 
+	/* An event that was long under way must not make its values look new; a clock may go slower. */
+	#clock(now, sure = false) {
+		const skew = now - Date.now(), here = performance.now();
+		if (!sure && skew < this.skew && here - this.#sure < SURE_MS)
+			return;
+		this.skew = skew;
+		this.#sure = here;
+	}
+
 	#changes({now, v}) {
 		const changed = new Set();
-		// an event that was long under way must not make its values look new
-		this.skew = Math.max(this.skew, now - Date.now());
+		this.#clock(now);
 		let alarms = false;
 		for (const [i, value, code, good, age, alarm = null, why = null, commanded = null] of v) {
 			const signal = this.signals[i]?.i === i ? this.signals[i]
