@@ -83,3 +83,15 @@ test("a switch that reads otherwise stands at what owsd was commanded, not at wh
 		paint(store.value(one));
 		assert.ok(toggle.hidden && !node.withText("Set on").hidden, "nobody knows: two buttons");
 	});
+
+test("what a proxy lost may have been done, what owsd-web answers with a reason was not", async () => {
+	for (const [answer, words] of [[502, "on: not known whether it was done: no"],
+		[504, "on: not known whether it was done: no"], [503, "on: refused: no"],
+		[() => { throw new Error("cut"); }, "on: not known whether it was done: no connection to owsd-web"]]) {
+		server.answers["api/set"] = answer;
+		const {node, result} = shown("pump");
+		node.find((one) => one.getAttribute("role") === "switch").click();
+		await settle();
+		assert.equal(result.textContent, words);
+	}
+});

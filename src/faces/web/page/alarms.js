@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The view Alarms: what waits first, then what was acknowledged or shelved, then what happened.
-import {get, post} from "./api.js";
+import {failed, get, post} from "./api.js";
 import {AlarmCard} from "./card.js";
 import {ask} from "./command.js";
 import {announce, el, later, put} from "./dom.js";
@@ -106,7 +106,7 @@ async function send(name, action, more = {}) {
 		put(fault, "");
 		announce(`${name}: ${action} done`);
 	} catch (error) {
-		put(fault, `Cannot ${action} ${name}: ${error.message}.`);
+		put(fault, `${action} ${name}: ${failed(error)}.`);
 		return;
 	}
 	look();

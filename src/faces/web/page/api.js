@@ -26,6 +26,10 @@ async function ask(path, options) {
  */
 export const isUnknown = ({status}) => !status || status === 502 || status === 504;
 
+/** Why a command is not known to be done. */
+export const failed = (error) =>
+	`${isUnknown(error) ? "not known whether it was done" : "refused"}: ${error.message}`;
+
 const query = (values) => new URLSearchParams(
 	Object.entries(values).filter(([, value]) => value !== undefined)).toString();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Commands an output: a switch or a button in its row, and a dialog that asks before each command.
-import {post} from "./api.js";
+import {failed, post} from "./api.js";
 import {announce, button, el, put} from "./dom.js";
 import {store} from "./store.js";
 import {valueText, withUnit} from "./words.js";
@@ -34,9 +34,7 @@ export function control(signal) {
 			say(signal.name, result, taken ? "taken" : "pending",
 				taken ? `${text}: taken` : `${text}: not confirmed yet`);
 		} catch (error) {
-			say(signal.name, result, "refused", error.status
-				? `${text}: refused: ${error.message}`
-				: `${text}: not known whether it was set: ${error.message}`);
+			say(signal.name, result, "refused", `${text}: ${failed(error)}`);
 		}
 		node.classList.remove("is-pending");
 	};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The special signals of a signal, beside its value: ages and counters, read while they are seen,
 // and what can be done by hand: reading and writing off and on, a write at once, counters reset.
-import {get, post} from "./api.js";
+import {failed, get, post} from "./api.js";
 import {ask} from "./command.js";
 import {announce, el, put} from "./dom.js";
 import {store} from "./store.js";
@@ -105,7 +105,7 @@ export class Special {
 			announce(`${name}: ${result === "pending" ? "not taken yet" : act === "button" ? "sent"
 				: value ? "on" : "off"}`);
 		} catch (error) {
-			put(this.fault, `${name}: ${error.message}`);
+			put(this.fault, `${name}: ${failed(error)}`);
 		}
 		this.#read();
 	}
