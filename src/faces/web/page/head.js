@@ -109,6 +109,6 @@ export function build() {
 	store.addEventListener("trust", trust);
 	store.addEventListener("signals", renewed);
 	store.addEventListener("signals", choose, {once: true});
-	store.addEventListener("values", later(count, 200));
+	store.addEventListener("values", later(renewed, 200));
 	more();
 }
