@@ -24,6 +24,7 @@ class Draft extends EventTarget {
 	problems = [];
 	valid = true;
 	restored = false; // the draft is of before the page was loaded anew
+	typed = false; // the part Text has more than the draft, of the same base
 	#past = [];
 	#future = [];
 	#turn = Promise.resolve();
@@ -86,7 +87,7 @@ class Draft extends EventTarget {
 			this.base = kept.base;
 			await this.#show(kept.text);
 			this.restored = this.dirty;
-		} else if (first || (!this.dirty && this.overtaken)) {
+		} else if (first || (!this.dirty && !this.typed && this.overtaken)) {
 			this.base = this.disk;
 			await this.#show(text, model);
 		} else if (text === this.text) {

@@ -13,6 +13,7 @@ export function build(root) {
 	area = el("textarea", {id: "config-text", wrap: "off", spellcheck: "false", rows: 24,
 		autocapitalize: "off", "aria-label": "Text of the draft", "aria-describedby": "text-hint",
 		oninput: () => {
+			draft.typed = true;
 			clearTimeout(timer);
 			timer = setTimeout(flush, REST_MS);
 			number();
@@ -29,18 +30,21 @@ export function build(root) {
 /* A text area has LF alone; the file keeps the line ends that it has. */
 const endOf = (text) => /\r\n|\n|\r/.exec(text)?.[0] ?? "\n";
 const shownText = (text) => text.replace(/\r\n|\r/g, "\n");
+const isOther = () => area.value !== shownText(draft.text);
 
 /** Have the draft take what was typed. */
 export async function flush() {
 	clearTimeout(timer);
 	timer = 0;
-	if (area.value === shownText(draft.text) || area.value === sent)
+	draft.typed = isOther();
+	if (!draft.typed || area.value === sent)
 		return;
 	const mine = area.value;
 	sent = mine;
 	try {
 		const end = endOf(draft.text);
 		await draft.write(end === "\n" ? mine : mine.replaceAll("\n", end));
+		draft.typed = isOther();
 		put(fault, "");
 	} catch (error) {
 		put(fault, `The text cannot be checked: ${error.message}. It is not in the draft yet.`);
@@ -50,7 +54,7 @@ export async function flush() {
 
 export function paint() {
 	area.readOnly = !draft.editable;
-	if (!timer && sent === null && area.value !== shownText(draft.text) && !fault.textContent)
+	if (!timer && sent === null && isOther() && !fault.textContent)
 		area.value = shownText(draft.text);
 	problems.replaceChildren(problemList());
 	number();
