@@ -6,10 +6,10 @@ import {pass, server, settle} from "./browser.js";
 import "./document.js";
 
 const GOOD = 0xc0, DIFFERS = 0x1c;
-let store, control, list = [];
+let store, control, list = [], generation = 1;
 
 server.answers["api/info"] = () => ({now: Date.now(), since: 1, writable: true});
-server.answers["api/signals"] = () => ({generation: 1, cursor: 1, now: Date.now(), signals: list});
+server.answers["api/signals"] = () => ({generation, cursor: 1, now: Date.now(), signals: list});
 
 const signal = (i, name, more) => ({i, name, type: "double", output: true, path: `/${name}`,
 	decimals: null, age: 0, quality: {code: GOOD, good: true, why: null, text: "good"}, ...more});
@@ -27,6 +27,7 @@ function shown(name) {
 
 async function fetched(...signals) {
 	list = signals;
+	generation++;
 	store.event("missed", {});
 	await settle();
 }
@@ -94,4 +95,45 @@ test("what a proxy lost may have been done, what owsd-web answers with a reason 
 		await settle();
 		assert.equal(result.textContent, words);
 	}
+});
+
+const swapped = () => [signal(0, "pump", {type: "bool", value: true, path: "/valve"}),
+	signal(1, "valve", {type: "bool", value: false, path: "/pump"})];
+
+test("a click that is confirmed after a reload goes to no other device of that name", async () => {
+	await fetched(signal(0, "pump", {type: "bool", value: false, confirm: true}), list[1]);
+	const {node, result} = shown("pump");
+	server.asked.length = 0;
+	node.find((one) => one.getAttribute("role") === "switch").click();
+	await settle();
+	assert.match(dialog().textContent, /It is off now/);
+	await fetched(...swapped());
+	assert.match(dialog().textContent, /another signal/);
+	dialog().firstChild.submit();
+	await settle();
+	assert.deepEqual(sent(), []);
+	assert.match(result.textContent, /not set: it is another signal since a reload/);
+});
+
+test("a dialog that stands open says what is now", async () => {
+	shown("dose").node.withText("Set\u2026").click();
+	await settle();
+	assert.match(dialog().textContent, /It is 7\.49 now/);
+	await fetched(list[0], signal(1, "dose", {value: 8}));
+	assert.match(dialog().textContent, /It is 8 now/);
+	dialog().close("no");
+});
+
+test("the answer to a command stands in the row that came in place of its own", async () => {
+	let answer;
+	server.answers["api/set"] = () => new Promise((resolve) => { answer = resolve; });
+	const old = shown("pump"), other = shown("dose");
+	old.node.find((one) => one.getAttribute("role") === "switch").click();
+	await settle();
+	old.node.remove();
+	const made = shown("pump");
+	answer({status: 403, error: "ControlAllow"});
+	await settle();
+	assert.equal(made.result.textContent, "on: refused: ControlAllow");
+	assert.equal(other.result.textContent, "");
 });

@@ -24,7 +24,12 @@ const step = (signal) => WHOLE.includes(signal.type) ? 1
 /** The control of an output: {node, result, paint(value)}; result is in node at first. */
 export function control(signal) {
 	const result = el("span", {class: "result"});
+	result.name_ = signal.name;
 	const send = async (value) => {
+		if (!store.same(signal)) {
+			say(signal.name, result, "refused", "not set: it is another signal since a reload");
+			return;
+		}
 		const text = withUnit(signal, valueText(signal, value));
 		say(signal.name, result, "pending", `setting ${text} \u2026`);
 		node.classList.add("is-pending");
@@ -48,13 +53,18 @@ export function control(signal) {
 	}};
 }
 
-function say(name, result, state, text) {
-	result.className = `result is-${state}`;
-	put(result, text);
+/* A reload makes rows anew: then it stands in those of that name. */
+function say(name, one, state, text) {
 	announce(`${name} ${text}`);
-	clearTimeout(result.timer);
-	if (state === "taken") // a refusal stays until the next act
-		result.timer = setTimeout(() => put(result, ""), RESULT_MS);
+	for (const result of one.isConnected ? [one] : document.querySelectorAll(".result")) {
+		if (result.name_ !== name)
+			continue;
+		result.className = `result is-${state}`;
+		put(result, text);
+		clearTimeout(result.timer);
+		if (state === "taken") // a refusal stays until the next act
+			result.timer = setTimeout(() => put(result, ""), RESULT_MS);
+	}
 }
 
 /*
@@ -116,17 +126,29 @@ export function ask(title, accept, nodes, ready = () => true) {
 	});
 }
 
-const present = (signal) => store.value(signal) === null ? "unknown"
-	: withUnit(signal, valueText(signal, store.value(signal)));
+/* What an output is, while its dialog is open: a reload may give its name to another. */
+function presentWords(shown) {
+	const signal = store.same(shown), value = signal && store.value(signal);
+	return !signal ? "A reload has made it another signal."
+		: `It is ${value === null ? "unknown" : withUnit(signal, valueText(signal, value))} now.`;
+}
+
+async function askOf(signal, title, accept, nodes, ready) {
+	const present = el("p", {}, presentWords(signal)), events = ["signals", "values", "trust"];
+	const paint = () => put(present, presentWords(signal));
+	events.forEach((type) => store.addEventListener(type, paint));
+	const yes = await ask(title, accept,
+		[el("p", {}, signal.description || `Path ${signal.path}`), present, ...nodes], ready);
+	events.forEach((type) => store.removeEventListener(type, paint));
+	return yes;
+}
 
 /** Resolves to true; where the configuration wants it, only after the user has confirmed. */
 function confirmed(signal, value) {
 	if (!signal.confirm)
 		return true;
 	const text = valueText(signal, value);
-	return ask(`Set ${signal.name} ${text}?`, `Set ${text}`,
-		[el("p", {}, signal.description || `Path ${signal.path}`),
-			el("p", {}, `It is ${present(signal)} now.`)]);
+	return askOf(signal, `Set ${signal.name} ${text}?`, `Set ${text}`, []);
 }
 
 /** The value that the user enters and confirms; null: none. */
@@ -146,9 +168,7 @@ async function entered(signal) {
 		if (slider && field.value.trim() && Number.isFinite(Number(field.value)))
 			slider.value = field.value;
 	});
-	const yes = await ask(`Set ${signal.name}`, "Set", [
-		el("p", {}, signal.description || `Path ${signal.path}`),
-		el("p", {}, `It is ${present(signal)} now.`),
+	const yes = await askOf(signal, `Set ${signal.name}`, "Set", [
 		el("label", {for: "command-value"},
 			signal.unit ? `New value in ${signal.unit}` : "New value"),
 		field, slider,

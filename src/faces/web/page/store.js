@@ -51,6 +51,12 @@ class Store extends EventTarget {
 		return this.signals.find((signal) => signal.name === name);
 	}
 
+	/** The signal that has its name now; null: another one has. */
+	same(shown) {
+		const signal = this.find(shown.name);
+		return signal?.path === shown.path ? signal : null;
+	}
+
 	async start() {
 		await this.#load();
 		this.#connection.start(this.#after);
