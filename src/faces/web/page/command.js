@@ -24,6 +24,7 @@ const step = (signal) => WHOLE.includes(signal.type) ? 1
 /** The control of an output: {node, result, paint(value)}; result is in node at first. */
 export function control(signal) {
 	const result = el("span", {class: "result"});
+	let late = null; // the words of what the bus had not confirmed in time
 	result.name_ = signal.name;
 	const send = async (value) => {
 		if (!store.same(signal)) {
@@ -31,11 +32,13 @@ export function control(signal) {
 			return;
 		}
 		const text = withUnit(signal, valueText(signal, value));
+		late = null;
 		say(signal.name, result, "pending", `setting ${text} \u2026`);
 		node.classList.add("is-pending");
 		try {
 			const answer = await post("set", {name: signal.name, value});
 			const taken = answer.result !== "pending";
+			late = taken ? null : text;
 			say(signal.name, result, taken ? "taken" : "pending",
 				taken ? `${text}: taken` : `${text}: not confirmed yet`);
 		} catch (error) {
@@ -50,6 +53,10 @@ export function control(signal) {
 		for (const one of made.nodes)
 			one.disabled = !able;
 		made.paint(value);
+		if (late !== null && withUnit(signal, valueText(signal, value)) === late) {
+			say(signal.name, result, "taken", `${late}: taken`);
+			late = null;
+		}
 	}};
 }
 
