@@ -6,7 +6,7 @@ import {pass, server, settle} from "./browser.js";
 import "./document.js";
 
 const GOOD = 0xc0, DIFFERS = 0x1c;
-let store, control, list = [], generation = 1;
+let store, control, wrong, list = [], generation = 1;
 
 server.answers["api/info"] = () => ({now: Date.now(), since: 1, writable: true});
 server.answers["api/signals"] = () => ({generation, cursor: 1, now: Date.now(), signals: list});
@@ -36,7 +36,7 @@ beforeEach(async () => {
 	list = [signal(0, "pump", {type: "bool", value: false}), signal(1, "dose", {value: 7.49})];
 	if (!store) {
 		({store} = await import("./page/store.js"));
-		({control} = await import("./page/command.js"));
+		({control, wrong} = await import("./page/command.js"));
 		await store.start();
 	}
 	await fetched(...list);
@@ -136,4 +136,28 @@ test("the answer to a command stands in the row that came in place of its own", 
 	await settle();
 	assert.equal(made.result.textContent, "on: refused: ControlAllow");
 	assert.equal(other.result.textContent, "");
+});
+
+test("what the bus has not confirmed in time is taken when the value is there", async () => {
+	server.answers["api/set"] = {result: "pending"};
+	const {node, result, paint} = shown("pump");
+	node.find((one) => one.getAttribute("role") === "switch").click();
+	await settle();
+	paint(false);
+	paint(null);
+	assert.equal(result.textContent, "on: not confirmed yet");
+	paint(true);
+	assert.equal(result.textContent, "on: taken");
+	await pass(8100);
+	paint(true);
+	assert.equal(result.textContent, "");
+});
+
+test("a number with a comma is none, nor is a text, an end without limits, or what is out of range", () => {
+	for (const [type, text, range] of [["double", "0,5"], ["double", "1,000"], ["double", "x"], ["double", " "],
+		["double", "1e999"], ["word", "1.5"], ["byte", "256", [0, 255]]])
+		assert.notEqual(wrong({type}, text, range), "", text);
+	for (const [type, text, range] of [["double", "0.5"], ["double", " 7 "], ["string", "0,5"], ["string", ""],
+		["word", "0x5"], ["byte", "255", [0, 255]]])
+		assert.equal(wrong({type}, text, range), "", text);
 });

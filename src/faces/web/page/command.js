@@ -191,10 +191,11 @@ async function entered(signal) {
 	return signal.type === "string" ? field.value : Number(field.value);
 }
 
-function wrong(signal, text, range) {
+/** Why no command can be made of the text; "": one can. */
+export function wrong(signal, text, range) {
 	if (signal.type === "string")
 		return "";
-	const value = Number(text.replace(",", "x"));
+	const value = text.includes(",") ? NaN : Number(text);
 	if (!text.trim() || !Number.isFinite(value))
 		return "Enter a number; the decimal sign is the point.";
 	if (WHOLE.includes(signal.type) && !Number.isInteger(value))
