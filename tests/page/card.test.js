@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import {beforeEach, test} from "node:test";
 import "./document.js";
 
-const {AlarmCard} = await import("./page/card.js");
+const {AlarmCard, keyOf} = await import("./page/card.js");
 const {store} = await import("./page/store.js");
 
 beforeEach(() => {
@@ -30,4 +30,12 @@ test("an alarm of a limit is acknowledged or shelved, a shelved one unshelved", 
 test("what ends with its cause has no buttons, which would act on another alarm of that name", () => {
 	assert.deepEqual(actions({alarm: "device", device: true, state: "stands"}), []);
 	assert.deepEqual(actions({alarm: "not as commanded", state: "stands"}), []);
+});
+
+test("each alarm of a signal has its own card, which it keeps while a limit alarm changes", () => {
+	const of = (alarm, state, device = false) => keyOf({name: "pump", alarm, state, device});
+	const all = [of("device", "stands", true), of("device", "cannot be reset: ResetLatch", true),
+		of("high", "unacknowledged"), of("not as commanded", "stands")];
+	assert.equal(new Set(all).size, all.length);
+	assert.equal(of("high", "unacknowledged"), of("high", "acknowledged"));
 });

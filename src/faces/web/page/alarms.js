@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The view Alarms: what waits first, then what was acknowledged or shelved, then what happened.
 import {failed, get, post} from "./api.js";
-import {AlarmCard} from "./card.js";
+import {AlarmCard, keyOf} from "./card.js";
 import {ask} from "./command.js";
 import {announce, el, later, put} from "./dom.js";
 import * as journal from "./journal.js";
@@ -83,7 +83,7 @@ function draw(alarms) {
 	const old = cards;
 	cards = new Map();
 	for (const alarm of alarms) {
-		const key = `${alarm.name} ${alarm.alarm} ${alarm.unarmed ?? alarm.device}`;
+		const key = keyOf(alarm);
 		const card = old.get(key) ?? new AlarmCard({send, shelve});
 		card.take(alarm, !rank(alarm));
 		cards.set(key, card);

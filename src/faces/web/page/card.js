@@ -10,6 +10,9 @@ import {alarmOf, moment, msOf, qualityWords, span, valueText} from "./words.js";
 const WIDTH = 180, HEIGHT = 44, HOUR_MS = 3600000, POINTS = 90;
 const AGAIN_MS = 60000; // until the past is fetched anew
 
+/** Which card an alarm has: a device alarm that stands, and whose reset is refused, has two. */
+export const keyOf = ({name, alarm, device, state}) => `${name} ${alarm} ${device ? state : ""}`;
+
 export class AlarmCard {
 	#alarm = null;
 	#acts;
