@@ -29,6 +29,12 @@ test("an alarm that stands has no end, and one that returned before the window h
 		[["raised", null], ["raised", null], ["returned", null]]);
 });
 
+test("of what is raised again, as after a restart of owsd, only the newest can stand", () => {
+	const all = happenings([alarm("09:00:00", "raised"), alarm("10:00:00", "raised"),
+		alarm("11:00:00", "raised"), alarm("11:30:00", "raised", {alarm: "high high"})], none);
+	assert.deepEqual(all.map(({over}) => over), [false, false, true, true]);
+});
+
 test("what outputs take at a start is one line, and a command is another", () => {
 	const all = happenings([command("07:00:00", "InitValue", "light", false),
 		command("07:00:01", "InitValue", "pump", false),

@@ -75,8 +75,8 @@ function say(name, one, state, text) {
 }
 
 /*
- * A switch shows what is; where that is not known it would lie, and two buttons take its place. Where
- * it reads otherwise than it was commanded, it is a hollow one of the command.
+ * A switch shows what is; where that is not known it would lie, and two buttons take its place.
+ * Where it reads otherwise than it was commanded, it is a hollow one of the command.
  */
 function switchOf(signal, send) {
 	const set = async (value) => {

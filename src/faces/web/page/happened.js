@@ -40,8 +40,8 @@ function commandWords({event, value}, signal) {
 
 /**
  * Entries of the journals, in any order, as happenings, newest first: {time, name, journal, alarm,
- * what, value, ended, seen, by, more}. ended: ms, null: not that one knows. seen: {time, by} of who
- * has acknowledged. find(name): the signal.
+ * what, value, ended, over, seen, by, more}. ended: ms, null: not that one knows; over: it
+ * has ended though. seen: {time, by} of who acknowledged it. find(name): the signal.
  */
 export function happenings(entries, find) {
 	const all = [], open = new Map();
@@ -59,10 +59,12 @@ export function happenings(entries, find) {
 			continue;
 		}
 		const one = {time, name: name ?? "", journal, alarm, value: alarm ? value : null, ended: null,
-			seen: null, by: actorOf(entry.by), more: [entry.more ? `${entry.more} more before` : "",
-				entry.remark].filter(Boolean).join("; "),
+			over: false, seen: null, by: actorOf(entry.by),
+			more: [entry.more ? `${entry.more} more before` : "", entry.remark].filter(Boolean).join("; "),
 			what: alarm ? event : commandWords(entry, find(name))};
 		if (event === "raised") {
+			if (raised)
+				raised.over = true; // it is raised anew: of this one nobody knows the end
 			open.set(key, one);
 		} else if (event === "InitValue" && !entry.by) {
 			if (start && time - start.time < START_MS) {

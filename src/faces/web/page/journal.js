@@ -86,8 +86,8 @@ export function draw(alarms) {
 	paint();
 }
 
-const stands = ({what, name, alarm, ended}) =>
-	what === "raised" && ended === null && standing.has(`${name} ${alarm}`);
+const stands = ({what, name, alarm, ended, over}) =>
+	what === "raised" && ended === null && !over && standing.has(`${name} ${alarm}`);
 
 function paint() {
 	for (const chip of kinds)
