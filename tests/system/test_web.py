@@ -449,6 +449,7 @@ def test_alarms_journal_and_stats_are_those_of_owsctl(scene):
     same = ("name", "alarm", "state", "device", "polled")
     assert [alarm[k] for k in same] == [told[k] for k in same], (alarm, told)
     assert alarm["i"] == 0 and alarm["value"] == 21.5 and alarm["quality"]["good"], alarm
+    assert alarm["words"] == page.json("/api/signals")["signals"][0]["alarm"] == "! high", alarm
     for value in (1, 2, 3):
         set_relays(scene, daemon, value)
     entries = page.json("/api/journal")["entries"]

@@ -26,10 +26,12 @@ struct listing {
 static void lists_add(void *ctx, const struct present *alarm)
 {
 	struct listing *list = ctx;
+	char words[SHOW_ALARM];
 
 	json_object(list->json, NULL);
 	json_int(list->json, "i", alarm->signal);
 	present_json(list->json, alarm, &list->now);
+	json_string(list->json, "words", show_alarm(&list->show, alarm->signal, words));
 	show_value(list->json, &list->show, alarm->signal);
 	json_object_end(list->json);
 }

@@ -5,7 +5,6 @@ import {get} from "./api.js";
 import {button, el, later, put} from "./dom.js";
 import {waiting} from "./head.js";
 import {store} from "./store.js";
-import {alarmOf} from "./words.js";
 
 const HIDDEN_MS = 20000;
 const KEY = {browser: "owsd.tell.browser", sound: "owsd.tell.sound"};
@@ -22,9 +21,15 @@ let known = null, sound = null, hint;
 const chips = {};
 const isOn = (kind) => localStorage.getItem(KEY[kind]) === "1";
 
-/** Names of what waits now and did not before; before: null, nothing is known yet. */
-export const fresh = (before, now) => before === null ? []
-	: now.filter(({name, text}) => !before.has(`${name} ${text}`));
+const keyOf = ({name, text}) => `${name} ${text}`;
+
+/** What waits now and did not before (keys; null: nothing is known). A return is no news. */
+export const fresh = (before, now) => before === null ? [] : now.filter(({name, text}) =>
+	![text, text.replace(/, returned$/, "")].some((one) => before.has(keyOf({name, text: one}))));
+
+/** What waits, of api/alarms: in the words that signals have. */
+export const waitingOf = (alarms) => waiting([...new Map(alarms.map(({name, words}) =>
+	[name, {name, alarm: words}])).values()]);
 
 async function show(name, text) {
 	const options = {body: text, tag: `owsd ${name}`, icon: "icon-waits.svg"};
@@ -53,7 +58,7 @@ function beep() {
 
 function judge(open) {
 	const news = fresh(known, open);
-	known = new Set(open.map(({name, text}) => `${name} ${text}`));
+	known = new Set(open.map(keyOf));
 	if (!news.length)
 		return;
 	if (isOn("browser") && globalThis.Notification?.permission === "granted")
@@ -68,8 +73,7 @@ async function askHidden() {
 		return;
 	try {
 		const {alarms} = await get("alarms");
-		judge(alarms.filter(({state}) => /unacknowledged|^stands/.test(state)).map((one) =>
-			({name: one.name, text: alarmOf(one.alarm).text})));
+		judge(waitingOf(alarms));
 	} catch {
 		// the next time
 	}
