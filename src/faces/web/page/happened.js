@@ -104,14 +104,14 @@ export function matches(one, words) {
 	return words.every((word) => text.includes(word));
 }
 
-/** How many began in each hour of the day that begins at from, ms. */
-export function hoursOf(all, from) {
+/** The hour of the day when it began, by the clock; one of the autumn is there twice. */
+export const hourOf = ({time}) => new Date(time).getHours();
+
+/** How many began in each hour of their day. */
+export function hoursOf(all) {
 	const hours = new Array(24).fill(0);
-	for (const {time} of all) {
-		const n = Math.floor((time - from) / 3600000);
-		if (n >= 0 && n < 24)
-			hours[n]++;
-	}
+	for (const one of all)
+		hours[hourOf(one)]++;
 	return hours;
 }
 

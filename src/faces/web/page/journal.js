@@ -3,13 +3,13 @@
 import {get} from "./api.js";
 import {badge} from "./badge.js";
 import {button, el, put, table} from "./dom.js";
-import {happenings, hoursOf, isLost, joined, matches} from "./happened.js";
+import {happenings, hourOf, hoursOf, isLost, joined, matches} from "./happened.js";
 import {store} from "./store.js";
-import {midnight} from "./when.js";
+import {daysLater, midnight} from "./when.js";
 import {alarmOf, clock, dateAndClock, dayText, moment, msOf, span, valueText, withUnit,
 	wordsOf} from "./words.js";
 
-const DAY_MS = 86400000, DAYS = 7, ENTRIES = 1000, PAGE = 50;
+const DAYS = 7, ENTRIES = 1000, PAGE = 50;
 const KINDS = [["", "All"], ["alarms", "Alarms"], ["commands", "Commands"]];
 const COLUMNS = [["Time", "time"], "Signal", "What", ["Value", "right"], ["Lasted", "right"], "By"];
 
@@ -39,7 +39,7 @@ export function build(root) {
 		...kinds, day), el("div", {class: "sheet happened"}, hours, lines, foot));
 }
 
-const begin = () => midnight(store.now() - (DAYS - 1) * DAY_MS);
+const begin = () => daysLater(midnight(store.now()), 1 - DAYS);
 
 /** Fetch what was before the oldest entry that is here. */
 async function older() {
@@ -65,18 +65,18 @@ async function choose(value) {
 }
 
 export async function look() {
-	const now = store.now(), {entries = []} = await get("journal", {since: begin(), n: ENTRIES});
+	const {entries = []} = await get("journal", {since: begin(), n: ENTRIES});
 	const known = raw.length;
 	raw = joined(entries, raw, ENTRIES).filter(({time}) => msOf(time) >= begin());
 	if (!known || raw.length === entries.length)
 		cut = entries.length >= ENTRIES;
 	all = happenings(raw, (name) => store.find(name));
-	const today = midnight(now);
-	if (Number(day.lastChild?.value) === midnight(now - (DAYS - 1) * DAY_MS))
+	const today = midnight(store.now());
+	if (Number(day.lastChild?.value) === begin())
 		return;
 	state.day = today;
 	day.replaceChildren(...Array.from({length: DAYS}, (_, n) => {
-		const at = midnight(today + DAY_MS / 2 - n * DAY_MS);
+		const at = daysLater(today, -n);
 		return el("option", {value: at}, n ? dayText(at) : `${dayText(at)}, today`);
 	}));
 }
@@ -92,13 +92,11 @@ const stands = ({what, name, alarm, ended, over}) =>
 function paint() {
 	for (const chip of kinds)
 		chip.setAttribute("aria-pressed", String(chip.dataset.kind === state.kind));
-	const from = state.day, until = midnight(from + 1.5 * DAY_MS);
+	const from = state.day, until = daysLater(from, 1);
 	const wanted = all.filter((one) => one.time >= from && one.time < until
 		&& (!state.kind || one.journal === state.kind) && matches(one, state.words));
-	paintHours(hoursOf(wanted, from));
-	const start = from + state.hour * 3600000;
-	paintLines(state.hour === null ? wanted
-		: wanted.filter(({time}) => time >= start && time < start + 3600000));
+	paintHours(hoursOf(wanted));
+	paintLines(wanted.filter((one) => state.hour === null || hourOf(one) === state.hour));
 }
 
 function paintHours(counts) {
