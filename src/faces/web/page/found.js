@@ -11,7 +11,7 @@ import {plural} from "./words.js";
 const SCAN_MS = 120000; // scans of several persons follow each other
 
 const ticks = new Map(); // "id/property": the row that is ticked
-let rows = [], scanned = false, scanning = false;
+let rows = [], scanned = false, scanning = false, whole = true;
 let buttons, only, count, fault, list, note, bar, watch;
 
 const itemsOf = (device) =>
@@ -46,12 +46,13 @@ async function scan() {
 	put(count, "Scanning\u2026");
 	paint();
 	try {
-		const {devices, whole} = await get("devices", {}, SCAN_MS);
+		const {devices, ...answer} = await get("devices", {}, SCAN_MS);
 		ticks.clear();
 		rows = devices.map(deviceRow);
 		list.replaceChildren(...rows.map(({node}) => node));
 		scanned = true;
-		put(fault, whole === false ? "Not all was read in time: scan again." : "");
+		whole = answer.whole !== false;
+		put(fault, !whole ? "Not all was read in time: scan again." : "");
 		announce(`${plural(devices.length, "device")} found.`);
 	} catch (error) {
 		put(fault, `The wires cannot be scanned: ${error.message}.`);
@@ -181,7 +182,7 @@ export function paint() {
 	put(buttons.add, `Add ${plural(ticks.size, "signal")} to the draft`);
 	buttons.add.disabled = !draft.editable
 		|| [...ticks.values()].some((one) => faultOf(one.name, taken(one)));
-	missing.paint(scanned ? rows.map((row) => row.device) : null);
+	missing.paint(scanned && whole ? rows.map((row) => row.device) : null);
 }
 
 // --- Readings -------------------------------------------------------------------------------

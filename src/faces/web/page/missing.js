@@ -18,7 +18,7 @@ export function build(root) {
 	root.append(box);
 }
 
-/** devices: what the scan found; null: there was none. */
+/** devices: what the scan found; null: there was none, or it has not read all. */
 export function paint(devices) {
 	if (!devices) {
 		box.hidden = true;
