@@ -23,7 +23,7 @@ test("only what is new is asked for, and entries of one moment come once", async
 	kept.push({name: "c", time: at(20)}, {name: "d", time: at(30)});
 	assert.equal(names(await journal.from(1.7e12 + 6, 9)), "dcba");
 	assert.equal(names(await journal.from(1.7e12 + 7, 9)), "dcba");
-	assert.deepEqual(asked, [5, 20, 30]);
+	assert.deepEqual(asked, [5, -980, -970]);
 	assert.equal(names(await journal.from(1.7e12 + 7, 3)), "dcb");
 });
 
@@ -36,4 +36,17 @@ test("an earlier window is asked for whole", async () => {
 	assert.deepEqual(asked, [15, 5]);
 	kept = [];
 	assert.equal(names(await new Entries().from(1.7e12, 9)), "");
+});
+
+test("where the clock was set, forward or back, all is asked for again", async () => {
+	for (const by of [3600000, -3600000]) {
+		const journal = new Entries();
+		const set = (step) => ["a", "b"].map((name, number) => ({journal: "alarms", number, name,
+			time: at(10 * number + step)}));
+		kept = set(0);
+		await journal.from(1.7e12 - 1e7, 9);
+		kept = set(by);
+		assert.deepEqual((await journal.from(1.7e12 - 1e7, 9)).map(({name, time}) => [name, time]),
+			[["b", at(10 + by)], ["a", at(by)]]);
+	}
 });

@@ -92,3 +92,13 @@ test("what is fetched anew and what was here before are each once, and leave no 
 	const same = {...b, name: "other"}; // at the same time as b
 	assert.deepEqual(joined([a, b], [same, b], Infinity), [a, b, same]);
 });
+
+test("entries that were here before the clock was set do not stand beside the same ones", () => {
+	const [b, a] = [alarm("10:01:00", "returned", {number: 1}), alarm("10:00:00", "raised", {number: 0})];
+	for (const hour of ["11", "09"]) {
+		const later = [b, a].map((one) => ({...one, time: one.time.replace("T10", `T${hour}`)}));
+		assert.deepEqual(joined(later, [b, a], 1000), later);
+	}
+	const slewed = [b, a].map((one) => ({...one, time: one.time.replace("00Z", "00.120Z")}));
+	assert.equal(joined([slewed[0]], [b, a], 1000).length, 2, "drawn by some ms it was not set");
+});

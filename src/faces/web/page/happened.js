@@ -3,6 +3,7 @@
 // value is beyond its limit.
 import {msOf, valueText, withUnit} from "./words.js";
 
+export const SLEW_MS = 1000; // by less a clock is drawn to the right time between two answers
 const START_MS = 10000; // outputs that take their first value within it do so at one start
 const LIMITS = {"high high": "hh", high: "h", low: "l", "low low": "ll"};
 const LOST = ["bad", "stale", "not as commanded"];
@@ -82,19 +83,29 @@ export function happenings(entries, find) {
 	return all.reverse();
 }
 
+/** Which entry it is: of those that owsd has in memory the time follows the clock. */
+export const entryOf = (one) => Number.isInteger(one.number)
+	? `${one.journal} ${one.number} ${one.name}` : JSON.stringify(one);
+
+/** Was the clock set between two answers? What is in both has another time then. */
+export function clockWasSet(newer, older) {
+	const times = new Map(newer.map((one) => [entryOf(one), msOf(one.time)]));
+	const both = older.find((one) => times.has(entryOf(one)));
+	return both !== undefined && Math.abs(times.get(entryOf(both)) - msOf(both.time)) > SLEW_MS;
+}
+
 /**
  * Newer entries before older ones, both newest first, and each once. Of newer ones that are as many
  * as are asked for at once, and begin after all older ones, those between are missing: then they
- * stand alone.
+ * stand alone, as after the clock was set.
  */
 export function joined(newer, older, most) {
-	if (!newer.length)
+	if (!newer.length || clockWasSet(newer, older))
 		return newer;
-	const end = msOf(newer.at(-1).time), kept = new Set(newer.map((one) => JSON.stringify(one)));
+	const end = msOf(newer.at(-1).time), kept = new Set(newer.map(entryOf));
 	if (newer.length >= most && older.length && msOf(older[0].time) < end)
 		return newer;
-	return [...newer, ...older.filter((one) => msOf(one.time) <= end
-		&& !kept.has(JSON.stringify(one)))];
+	return [...newer, ...older.filter((one) => msOf(one.time) <= end && !kept.has(entryOf(one)))];
 }
 
 /** Has it all these words somewhere? */
