@@ -2,7 +2,8 @@
 // The stream of events, as it comes in pieces within Cockpit.
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {reader} from "./page/cockpit.js";
+import "./browser.js";
+import {reader, way} from "./page/cockpit.js";
 
 const TEXT = 'id: 7:40\nevent: found\ndata: {"a": 1}\n\n: a comment\nevent: alive\ndata: {}\n\n';
 const EVENTS = [["found", '{"a": 1}', "7:40"], ["alive", "{}", "7:40"]];
@@ -26,3 +27,31 @@ test("lines of data are joined, and one blank behind the colon is taken off", ()
 	assert.deepEqual(read("data: a\ndata:  b\ndata\n\n"), [["message", "a\n b\n", ""]]));
 
 test("an event without data is none", () => assert.deepEqual(read("event: alive\n\n"), []));
+
+/* A Cockpit: names() of the sockets that are there; answers with the path of the socket. */
+const cockpitOf = (names) => ({
+	channel: () => ({addEventListener: (type, call) => setImmediate(() => {
+		for (const name of type === "message" ? names() : [])
+			call(null, JSON.stringify({event: "present", path: `${name}.web`}));
+		if (type === "close")
+			call(null, {});
+	})}),
+	http: (path) => ({request: () => names().some((name) => path.endsWith(`/${name}.web`))
+		? Promise.resolve(path) : Promise.reject({problem: "not-found"})}),
+});
+
+test("a page shows one instance: it does not go to another when the socket of that one is gone", async () => {
+	let names = ["A", "B"];
+	sessionStorage.setItem("owsd.instance", "B");
+	const {ask} = way(cockpitOf(() => names), 1000);
+	assert.match((await ask("api/info")).text, /B\.web$/);
+	names = ["A"];
+	for (let n = 0; n < 3; n++)
+		await assert.rejects(ask("api/info"), /there is no socket .*B\.web/);
+	names = ["A", "B"];
+	assert.match((await ask("api/info")).text, /B\.web$/);
+	sessionStorage.setItem("owsd.instance", "C");
+	assert.match((await way(cockpitOf(() => names), 1000).ask("x")).text, /A\.web$/, "the chosen one is not there");
+	names = [];
+	await assert.rejects(way(cockpitOf(() => names), 1000).ask("x"), /no socket .*\*\.web/);
+});

@@ -67,23 +67,25 @@ function words({problem, message}, name) {
 }
 
 export function way(cockpit, patience) {
-	let name = null, superuser; // superuser: the person's own rights do not suffice
+	// name: null, its socket is to be looked for; mine: that of the instance which the page shows
+	let name = null, mine, superuser; // superuser: the person's own rights do not suffice
 
 	async function client() {
 		if (!name) {
 			const names = await look(cockpit);
 			const chosen = sessionStorage.getItem(CHOSEN);
-			name = names.includes(chosen) ? chosen : names[0];
+			mine ??= names.includes(chosen) ? chosen : names[0];
+			if (!names.includes(mine))
+				throw {problem: "not-found"}; // another instance has other outputs
+			name = mine;
 		}
-		if (!name)
-			throw {problem: "not-found"};
 		return cockpit.http(`${DIRECTORY}/${name}.web`, superuser ? {superuser} : {});
 	}
 
 	/** After a fault: once more with administrative access, if Cockpit has it and it is needed. */
 	function again({problem}, tried) {
 		if (problem === "not-found")
-			name = null; // another may be there next time
+			name = null; // it may be there next time
 		if (problem !== "access-denied" || tried)
 			return false;
 		superuser = "try";
@@ -105,7 +107,7 @@ export function way(cockpit, patience) {
 				request.then(done, done);
 			});
 		} catch (fault) {
-			const why = words(fault, name);
+			const why = words(fault, mine);
 			if (again(fault, tried))
 				return ask(path, options);
 			throw new Error(why, {cause: fault});
@@ -118,7 +120,7 @@ export function way(cockpit, patience) {
 		const end = (fault, tried) => {
 			if (closed)
 				return;
-			const why = fault?.problem && words(fault, name);
+			const why = fault?.problem && words(fault, mine);
 			if (fault && again(fault, tried)) {
 				begin();
 				return;
