@@ -3,7 +3,7 @@
 import {failed, get, post} from "./api.js";
 import {AlarmCard, keyOf} from "./card.js";
 import {ask} from "./command.js";
-import {announce, el, later, put} from "./dom.js";
+import {alone, announce, el, later, put} from "./dom.js";
 import * as journal from "./journal.js";
 import {store} from "./store.js";
 import * as tell from "./tell.js";
@@ -26,7 +26,8 @@ export function build(root) {
 	store.addEventListener("alarm", soon);
 	store.addEventListener("trust", soon);
 	store.addEventListener("values", later(() => shown && paint(), 1000));
-	setInterval(() => shown && !document.hidden && look(), 10000);
+	const again = alone(look);
+	setInterval(() => shown && !document.hidden && again(), 10000);
 }
 
 export function show() {

@@ -2,7 +2,7 @@
 // The view Trends: the signals that the user picks, in a window of time that is moved by buttons, by
 // dragging, by the wheel or by keys, and that follows the present until it is.
 import {saveTable} from "./csv.js";
-import {el, later, put} from "./dom.js";
+import {alone, el, later, put} from "./dom.js";
 import {Entries} from "./entries.js";
 import {alarmsOf} from "./marks.js";
 import {Picker} from "./picker.js";
@@ -40,7 +40,8 @@ export function build(root) {
 		el("figure", {class: "trend sheet"}, stack.node)));
 	store.addEventListener("signals", renewed);
 	setInterval(frame, FRAME_MS);
-	setInterval(() => shown && state.until === null && !document.hidden && fetchAll(), FETCH_MS);
+	const again = alone(fetchAll); // one that takes longer would never come to its end
+	setInterval(() => shown && state.until === null && !document.hidden && again(), FETCH_MS);
 	const soon = later(() => shown && draw(), 200);
 	new ResizeObserver(soon).observe(stack.node);
 	window.addEventListener("resize", soon);
