@@ -329,6 +329,28 @@ test("what an output was commanded is what owsd says, whoever it was, and ends w
 	assert.equal(commanded(), null);
 });
 
+test("a name that another sensor has now, or another unit, begins its last hour anew", async () => {
+	const answer = server.answers["api/signals"];
+	let more;
+	server.answers["api/signals"] = () => {
+		const given = answer();
+		Object.assign(given.signals[0], {identity: "/28.A", unit: "C"}, more);
+		return given;
+	};
+	const fetched = async (values) => {
+		more = values;
+		streams.at(-1).sends("found", {now: Date.now(), generation: ++list.generation});
+		await settle();
+		return store.find("room").recent;
+	};
+	for (const [other, kept] of [[{description: "new"}, true], [{identity: "/28.B", path: "/28.B"}, false],
+		[{unit: "K"}, false]]) {
+		const before = await fetched({});
+		assert.equal(await fetched(other) === before, kept, JSON.stringify(other));
+	}
+	server.answers["api/signals"] = answer;
+});
+
 test("what a cache answers again and again is not late, what nothing is heard of is", async () => {
 	const {isLate} = await import("./page/look.js");
 	Object.assign(store.find("room"), {interval: 1, gap: undefined});

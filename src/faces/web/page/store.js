@@ -157,9 +157,11 @@ class Store extends EventTarget {
 				&& shape(this.signals) === shape(list.signals));
 		const old = new Map(this.signals.map((signal) => [signal.name, signal]));
 		const fresh = list.signals.map((given) => {
-			const signal = same ? old.get(given.name) : null;
-			return this.#set(Object.assign(signal ?? {recent: old.get(given.name)?.recent ?? []},
-				{...given, why: given.quality.why, text: given.quality.text}), given.value,
+			const before = old.get(given.name), signal = same ? before : null;
+			// of another sensor, or in another unit, the last hour is not its own
+			const own = before?.identity === given.identity && before?.unit === given.unit;
+			const kept = signal ?? {recent: own ? before?.recent ?? [] : []};
+			return this.#set(Object.assign(kept, {...given, why: given.quality.why, text: given.quality.text}), given.value,
 			given.quality.code, given.quality.good, given.age, now);
 		});
 		this.#generation = list.generation;
