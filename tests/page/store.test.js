@@ -307,6 +307,10 @@ test("a row says how the alarms of its signal stand, also where that changes wit
 	values([0, 22, GOOD, 1, 0]);
 	assert.equal(alarm(), null);
 	assert.equal(told, 2);
+	streams.at(-1).sends("alarm", {now: Date.now(), generation: list.generation, i: 0, alarm: ""});
+	assert.equal(told, 3);
+	values([0, 23, GOOD, 1, 0]);
+	assert.equal(told, 3, "the row says the same as the event");
 	store.removeEventListener("alarm", count);
 });
 

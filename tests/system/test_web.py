@@ -584,7 +584,7 @@ def test_an_output_that_reads_otherwise_is_among_the_alarms_with_what_was_comman
 
 def test_a_row_of_a_bad_value_has_its_reason(scene):
     daemon, page = both(scene, item("attic", "/28.A0B1C2000009/temperature"))
-    until(lambda: not page.json("/api/signals")["signals"][0]["quality"]["good"], 20, "it is absent")
+    until(lambda: page.json("/api/signals")["signals"][0]["quality"]["text"] == "device absent", 20, "it is absent")
     at = page.json("/api/signals")
     why = at["signals"][0]["quality"]["why"]
     with Events(page, after=f"{at['generation']}:1") as events:

@@ -161,8 +161,9 @@ class Store extends EventTarget {
 			// of another sensor, or in another unit, the last hour is not its own
 			const own = before?.identity === given.identity && before?.unit === given.unit;
 			const kept = signal ?? {recent: own ? before?.recent ?? [] : []};
-			return this.#set(Object.assign(kept, {...given, why: given.quality.why, text: given.quality.text}), given.value,
-			given.quality.code, given.quality.good, given.age, now);
+			const {why, text, code, good} = given.quality;
+			return this.#set(Object.assign(kept, {...given, why, text}), given.value, code, good,
+				given.age, now);
 		});
 		this.#generation = list.generation;
 		this.signals = fresh;
@@ -229,7 +230,7 @@ class Store extends EventTarget {
 	#alarm({i, alarm}) {
 		const signal = this.signals.find((one) => one.i === i);
 		if (signal && alarm !== undefined) {
-			signal.alarm = alarm;
+			signal.alarm = alarm || null; // as lists and rows have it
 			this.#tell("values", new Set([signal]));
 		}
 		this.#tell("alarm");
