@@ -139,7 +139,7 @@ static bool fits_image(const struct give *give, const struct ows_map *map)
 }
 
 /* Connect; owsd no longer looks at the memory of the connection before. */
-static int connect_again(struct ows *h)
+static int connect_again(struct ows *h, const struct ows_map *map)
 {
 	char name[SEGMENT_FILE];
 	struct shm_dir dir;
@@ -148,6 +148,7 @@ static int connect_again(struct ows *h)
 	if (h->give.base != NULL)
 		word_set(&give_header(&h->give)->state, OWS_STATE_STOPPED);
 	give_unmap(&h->next);
+	h->joined_ns = map->image->start_ns;
 	err = dir_open(h->dir, &dir);
 	if (err)
 		return err;
@@ -174,11 +175,12 @@ static int take_memory(struct ows *h, const struct ows_map *map, const struct ow
 
 int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 {
-	bool connected = h->join.connection < 0;
+	/* An owsd that was killed with a thread stuck in the kernel hangs up on nobody */
+	bool connected = h->join.connection < 0 || h->joined_ns != map->image->start_ns;
 	int err = h->mine == NULL ? make_mine(h) : 0;
 
 	if (!err && connected)
-		err = connect_again(h);
+		err = connect_again(h, map);
 	while (!err) {
 		bool has = fits_image(&h->next, map) || (!h->join.new &&fits_image(&h->give, map));
 		struct ows_welcome welcome;
@@ -192,7 +194,7 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 			err = take_memory(h, map, &welcome, memory);
 		else if (err == -ENOTCONN && !connected) {
 			connected = true;
-			err = connect_again(h);
+			err = connect_again(h, map);
 		}
 	}
 	return err == -ENOTCONN ? -ENOENT : err;

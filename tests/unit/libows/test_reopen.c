@@ -163,6 +163,32 @@ static void test_after_a_restart_the_controller_comes_back_with_its_token_and_be
 	TEST_ASSERT_EQUAL(1, instance_command(&in, 0, 2).person);
 }
 
+/* A thread that hangs in the kernel keeps all connections of an owsd that was killed. */
+static void test_an_owsd_that_was_killed_and_hangs_up_on_nobody_is_left(void)
+{
+	struct controller_beat beat;
+	struct instance next;
+	struct ows *reader;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	TEST_ASSERT_GREATER_OR_EQUAL(0, ows_fd(reader));
+	TEST_ASSERT_EQUAL(0, ows_beat(h, 1000));
+	instance_make(&next, "reopen", in.generation + 1, in.start_ns + 1, before, 3);
+	instance_lives_on(&next);
+	instance_show(&next);
+	image_state(&in.image, OWS_STATE_RETIRED);
+	TEST_ASSERT_EQUAL(0, reopen(h));
+	TEST_ASSERT_EQUAL_STRING("token 1", (char *)door_controller(next.door, 0)->hello.token);
+	controller_beat(instance_controller(&next, 0), &beat);
+	TEST_ASSERT_EQUAL(1000, beat.period_ms);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
+	TEST_ASSERT_EQUAL_INT64(1, instance_command(&next, 0, 2).value);
+	TEST_ASSERT_EQUAL(0, reopen(reader));
+	TEST_ASSERT_EQUAL(2, instance_controllers(&next));
+	ows_close(reader);
+	instance_end(&next);
+}
+
 static void test_a_controller_that_never_beat_comes_back_without_a_beat(void)
 {
 	struct controller_beat beat;
@@ -475,6 +501,7 @@ int main(void)
 	RUN_TEST(test_a_command_goes_to_the_same_signal_after_a_reload);
 	RUN_TEST(test_of_several_reloads_the_last_counts);
 	RUN_TEST(test_after_a_restart_the_controller_comes_back_with_its_token_and_beats);
+	RUN_TEST(test_an_owsd_that_was_killed_and_hangs_up_on_nobody_is_left);
 	RUN_TEST(test_a_controller_that_never_beat_comes_back_without_a_beat);
 	RUN_TEST(test_while_nobody_listens_the_old_image_stays_readable);
 	RUN_TEST(test_a_reader_that_asks_for_a_descriptor_is_woken_by_it);
