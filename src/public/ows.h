@@ -304,8 +304,8 @@ int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n,
 
 /*
  * Sleep until owsd publishes something newer than *news, at most timeout_ns (negative: no limit).
- * Start with *news = 0. Returns 1: news, 0: the time is over, -ESTALE as ows_get(), -EINTR. Wakes
- * once a second in between, to check whether the image still has its name.
+ * Start with *news = 0. Returns 1: news, 0: the time is over, -ESTALE as ows_get(), from the second
+ * time on after a tenth of a second, -EINTR. Wakes once a second, to look for another image.
  */
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
 /*

@@ -8,18 +8,14 @@
 #include "src/memory/libows/handle.h"
 #include "src/memory/libows/map.h"
 #include "src/memory/libows/news.h"
-#include "src/memory/shm/futex.h"
 #include "src/memory/shm/reader.h"
 
 /* Bits of ows_cursor.flags. */
 #define BEGUN 1u
-#define LOST 2u  /* it was reported that owsd is lost */
-#define STALE 4u /* -ESTALE was returned for this image */
+#define LOST 2u /* it was reported that owsd is lost */
 
 /* No ring enters 2^32 changes in that time: a number that is behind by so many looks like new. */
 #define CURSOR_KEEPS_NS (3600 * NS_PER_S)
-/* No event wakes a program when the next owsd is there, or when it did not reopen. */
-#define NEXT_OWSD_NS (100 * NS_PER_MS)
 
 static bool make_marks(struct ows *h)
 {
@@ -123,18 +119,6 @@ static int64_t slice(const struct ows *h, const struct ows_cursor *cursor, int64
 	return dies_in < ALIVE_LOOK_NS ? dies_in : ALIVE_LOOK_NS;
 }
 
-/* A program that does not reopen, or cannot yet, does not spin. */
-static int stale(struct ows_cursor *cursor, int64_t timeout_ns)
-{
-	static const uint32_t unchanged = 0;
-	int64_t pause = timeout_ns < 0 || timeout_ns > NEXT_OWSD_NS ? NEXT_OWSD_NS : timeout_ns;
-
-	if (cursor->flags & STALE && pause > 0)
-		segment_wait(&unchanged, 0, pause);
-	cursor->flags |= STALE;
-	return -ESTALE;
-}
-
 int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n, int64_t timeout_ns)
 {
 	const uint32_t *news = &h->map.image->news;
@@ -152,7 +136,7 @@ int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n, i
 		int64_t left;
 
 		if (got == -ESTALE)
-			return stale(cursor, timeout_ns);
+			return news_stale(h, timeout_ns);
 		if (got || until <= now_ns)
 			return got;
 		left = slice(h, cursor, now_ns);

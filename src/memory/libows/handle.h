@@ -69,7 +69,8 @@ struct ows {
 	/* Does owsd live? Computed once for each now_ns, which is alive_now */
 	int64_t alive_now, dead_after_ns;
 	bool alive;
-	bool orphan; /* owsd is dead, and there is another image; checked once a second */
+	bool told_stale; /* a wait has returned -ESTALE for this image */
+	bool orphan;     /* owsd is dead, and there is another image; checked once a second */
 	int64_t looked_ns;
 
 	/* The controller: of OWS_CONTROL, and of OWS_READ after ows_fd() */

@@ -69,6 +69,17 @@ int news_sleep(struct ows *h, uint32_t seen, int64_t left_ns)
 	return n > 0 ? 0 : n < 0 ? n : -ETIMEDOUT;
 }
 
+int news_stale(struct ows *h, int64_t timeout_ns)
+{
+	static const uint32_t unchanged = 0;
+	int64_t pause = timeout_ns < 0 || timeout_ns > NEXT_OWSD_NS ? NEXT_OWSD_NS : timeout_ns;
+
+	if (h->told_stale && pause > 0)
+		segment_wait(&unchanged, 0, pause);
+	h->told_stale = true;
+	return -ESTALE;
+}
+
 int ows_fd(struct ows *h)
 {
 	int saved = errno, err;

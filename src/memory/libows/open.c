@@ -117,7 +117,7 @@ static void take_map(struct ows *h, const struct ows_map *map)
 {
 	h->map = *map;
 	h->alive_now = h->looked_ns = INT64_MIN;
-	h->orphan = false;
+	h->orphan = h->told_stale = false;
 	h->dead_after_ns = alive_dead_after(map);
 }
 

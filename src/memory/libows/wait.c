@@ -18,7 +18,7 @@ int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns)
 
 		seen = __atomic_load_n(word, __ATOMIC_ACQUIRE);
 		if (alive_look(h, now_ns))
-			return -ESTALE;
+			return news_stale(h, timeout_ns);
 		if (seen != *news) {
 			*news = seen;
 			return 1;

@@ -380,6 +380,26 @@ static void test_wait_returns_for_news_time_and_retirement(void)
 	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, -1));
 }
 
+/* The loop that reopens at each -ESTALE, between the end of owsd and its next start. */
+static void test_a_wait_does_not_spin_while_owsd_is_away(void)
+{
+	uint32_t news = 0;
+	int64_t begin;
+
+	image_state(&in.image, OWS_STATE_STOPPED);
+	TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, -1));
+	begin = ows_now();
+	for (int i = 0; i < 4; i++) {
+		TEST_ASSERT_EQUAL(-ENOENT, ows_reopen(h));
+		TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, -1));
+	}
+	TEST_ASSERT_GREATER_OR_EQUAL_INT64(INSTANCE_S / 4, ows_now() - begin);
+	begin = ows_now();
+	for (int i = 0; i < 1000; i++)
+		TEST_ASSERT_EQUAL(-ESTALE, ows_wait(h, &news, 0));
+	TEST_ASSERT_LESS_THAN_INT64(90 * INSTANCE_S, ows_now() - begin);
+}
+
 static void *publish_later(void *arg)
 {
 	until_asleep(NULL);
@@ -512,6 +532,7 @@ int main(void)
 	RUN_TEST(test_reopen_waits_for_the_new_image);
 	RUN_TEST(test_reopen_of_what_is_present_changes_nothing);
 	RUN_TEST(test_wait_returns_for_news_time_and_retirement);
+	RUN_TEST(test_a_wait_does_not_spin_while_owsd_is_away);
 	RUN_TEST(test_a_sleeper_wakes_for_news_and_for_retirement);
 	RUN_TEST(test_open_refuses_what_is_not_ours);
 	RUN_TEST(test_open_refuses_names_and_files_that_cannot_be);
