@@ -309,7 +309,7 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 		command->generation = h->map.image->generation;
 	}
 	own = give_slot(&h->give, command->record);
-	applied = word_get(&own->applied);
+	applied = give_applied(&h->give, command->record);
 	if (applied && (int32_t)(applied - command->stamp) >= 0)
 		return 0;
 	if (__atomic_load_n(&own->taken, __ATOMIC_ACQUIRE) == command->stamp && own->err)

@@ -13,12 +13,6 @@
 
 /* --- A sample as the value that the caller gets ----------------------------------------------- */
 
-/* The stamp of this handle's last command for the record that was confirmed; 0: none. */
-static uint32_t value_applied(const struct ows *h, uint32_t record)
-{
-	return h->give.base != NULL ? word_get(&give_slot(&h->give, record)->applied) : 0;
-}
-
 static inline void value_fill(const struct ows *h, uint32_t record, struct ows_value *value,
                               const struct ows_sample *sample, uint8_t type)
 {
@@ -36,7 +30,7 @@ static inline void value_fill(const struct ows *h, uint32_t record, struct ows_v
 	value->tried_ns = sample->tried_ns;
 	value->err = sample->err;
 	value->count = sample->count;
-	value->applied = value_applied(h, record);
+	value->applied = give_applied(&h->give, record);
 	value->len = sample->len;
 	value->type = type;
 	value->quality = sample->quality;
@@ -338,7 +332,7 @@ int ows_command(struct ows *h, int id, struct ows_command *command)
 	}
 	if (h->give.base != NULL) {
 		own = give_slot(&h->give, record);
-		command->applied = word_get(&own->applied);
+		command->applied = give_applied(&h->give, record);
 		/* owsd stores err before taken */
 		command->taken = __atomic_load_n(&own->taken, __ATOMIC_ACQUIRE);
 		command->refused = (int32_t)word_get((const uint32_t *)&own->err);

@@ -44,6 +44,19 @@ static inline struct ows_command_slot *give_slot(const struct give *give, uint32
 	                (size_t)record * give->header.slot_size);
 }
 
+/*
+ * The stamp of the record's last confirmed command; 0: none. One that seems newer than the last set
+ * is older than that by 2^31 sets: it must reach no stamp of the record that a program may wait for.
+ */
+static inline uint32_t give_applied(const struct give *give, uint32_t record)
+{
+	const struct ows_command_slot *slot = give->base ? give_slot(give, record) : NULL;
+	uint32_t applied = slot ? word_get(&slot->applied) : 0;
+	uint32_t stamp = slot ? word_get(&slot->stamp) : 0; /* 0: applied was carried over */
+
+	return stamp && (int32_t)(applied - stamp) > 0 ? stamp - INT32_MAX : applied;
+}
+
 static inline struct ows_command_shelf *give_shelf(const struct give *give)
 {
 	return (void *)(give->base + give->header.shelf_off);

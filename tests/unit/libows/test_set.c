@@ -13,6 +13,7 @@
 #include "unity.h"
 
 #include "src/ground/signal/value.h"
+#include "src/memory/libows/handle.h"
 #include "tests/unit/aid/instance.h"
 
 static const struct instance_signal signals[] = {
@@ -126,6 +127,48 @@ static void test_what_owsd_took_and_confirmed_is_this_handles_own(void)
 	TEST_ASSERT_EQUAL(0, ows_command(h, valve, &command));
 	TEST_ASSERT_EQUAL(-ERANGE, command.refused);
 	ows_close(other);
+}
+
+static bool reached(int id, uint32_t stamp)
+{
+	struct ows_command command;
+	struct ows_value v;
+
+	TEST_ASSERT_EQUAL(0, ows_get(h, id, ows_now(), &v));
+	TEST_ASSERT_EQUAL(0, ows_command(h, id, &command));
+	TEST_ASSERT_EQUAL_HEX32(v.applied, command.applied);
+	return (int32_t)(v.applied - stamp) >= 0;
+}
+
+/* A program that sets all else in each cycle gets that far between two sets of the valve. */
+static void test_what_was_confirmed_2_to_the_31_sets_ago_confirms_no_new_set(void)
+{
+	static const uint32_t confirmed[] = {0, 5, 0x7fffffff, 0x80000001};
+	int valve = ows_find(h, "valve");
+	uint32_t first, second;
+
+	for (unsigned i = 0; i < sizeof(confirmed) / sizeof(confirmed[0]); i++) {
+		controller_applied(instance_controller(&in, 0), VALVE, confirmed[i]);
+		h->stamp = confirmed[i] + 0x80000010u;
+		TEST_ASSERT_EQUAL(0, ows_set(h, valve, 1, &first));
+		TEST_ASSERT_FALSE(reached(valve, first));
+		TEST_ASSERT_EQUAL(0, ows_set(h, valve, 0, &second));
+		TEST_ASSERT_FALSE(reached(valve, first));
+		TEST_ASSERT_FALSE(reached(valve, second));
+		controller_applied(instance_controller(&in, 0), VALVE, first);
+		TEST_ASSERT_TRUE(reached(valve, first));
+		TEST_ASSERT_FALSE(reached(valve, second));
+		controller_applied(instance_controller(&in, 0), VALVE, second);
+		TEST_ASSERT_TRUE(reached(valve, second));
+	}
+}
+
+/* After a start the slot has what was confirmed before, and no stamp yet. */
+static void test_what_was_confirmed_before_a_start_stays_so(void)
+{
+	controller_applied(instance_controller(&in, 0), VALVE, 7);
+	TEST_ASSERT_TRUE(reached(ows_find(h, "valve"), 7));
+	TEST_ASSERT_FALSE(reached(ows_find(h, "valve"), 8));
 }
 
 static void test_a_value_the_type_cannot_hold_is_refused(void)
@@ -576,6 +619,8 @@ int main(void)
 	RUN_TEST(test_an_engine_that_is_awake_needs_no_bell);
 	RUN_TEST(test_each_set_of_a_handle_has_a_greater_stamp);
 	RUN_TEST(test_what_owsd_took_and_confirmed_is_this_handles_own);
+	RUN_TEST(test_what_was_confirmed_2_to_the_31_sets_ago_confirms_no_new_set);
+	RUN_TEST(test_what_was_confirmed_before_a_start_stays_so);
 	RUN_TEST(test_a_value_the_type_cannot_hold_is_refused);
 	RUN_TEST(test_an_input_takes_no_sets);
 	RUN_TEST(test_an_input_takes_sets_while_its_write_enable_is_on);
