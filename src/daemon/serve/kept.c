@@ -113,6 +113,14 @@ int kept_signal(const struct kept *kept, const char *path, bool output)
 	return -1;
 }
 
+bool kept_has_outputs(const struct kept *kept)
+{
+	for (unsigned i = 0; i < kept->config->item_count; i++)
+		if (kept->config->items[i].output)
+			return true;
+	return false;
+}
+
 int kept_changes(const struct kept *kept, const char *path)
 {
 	struct shared_bits bits;

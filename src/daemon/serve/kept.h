@@ -32,5 +32,6 @@ void kept_forget(struct kept *kept, const struct node *node, int64_t now_ns);
 
 /* The record of the signal that has this path as output or input; -1: there is none. */
 int kept_signal(const struct kept *kept, const char *path, bool output);
+bool kept_has_outputs(const struct kept *kept);
 /* The record of the first output that a write of this path would change, too; -1: there is none. */
 int kept_changes(const struct kept *kept, const char *path);

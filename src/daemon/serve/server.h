@@ -59,6 +59,7 @@ enum client_step {
 	STEP_PROBE,
 	STEP_REFUSE,    /* is there a directory at all, of those that cannot be read or written? */
 	STEP_ADDRESS,   /* the address of an alias */
+	STEP_WHOSE,     /* the same, of an alias that is written to */
 	STEP_FAMILY,    /* the family of an alias */
 	STEP_STRUCTURE, /* the type of a property that the server does not know */
 };

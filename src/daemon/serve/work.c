@@ -146,8 +146,8 @@ static void present_answered(struct serve *s, struct client *c, int err)
 		else
 			answer_id(s, c, rom);
 	} else if (c->node.has_device && !c->node.has_rom) {
-		work_device_path(c, "/address");
-		work_ask(s, c, STEP_ADDRESS, BUS_READ, GUEST_ANY_LANE, client_room(c), 64);
+		work_ask(s, c, STEP_ADDRESS, BUS_READ, work_device_path(s, c, "/address"),
+		         client_room(c), 64);
 	} else {
 		answer_id(s, c, c->node.rom);
 	}
@@ -299,6 +299,9 @@ void work_answered(struct serve *s, struct client *c)
 	case STEP_WRITE:
 	case STEP_WRITE_EACH:
 		work_written(s, c, err);
+		return;
+	case STEP_WHOSE:
+		work_write_named(s, c, err);
 		return;
 	case STEP_DIR:
 	case STEP_BUSES:

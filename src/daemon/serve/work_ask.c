@@ -61,24 +61,27 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
 }
 
 /* Write the path with the bus number of the target; returns the lane that has to answer. */
-int work_path(struct serve *s, struct client *c)
+static int target_path(struct serve *s, struct client *c, int len, const char *property)
 {
 	const struct node *node = &c->node;
 
 	if (node->bus < 0) {
-		snprintf(c->path, sizeof(c->path), "%s", node->path);
+		snprintf(c->path, sizeof(c->path), "%.*s%s", len, node->path, property);
 		return GUEST_ANY_LANE;
 	}
-	snprintf(c->path, sizeof(c->path), "/bus.%u%s", s->buses.bus[node->bus].number,
-	         node->path[1] ? node->path : "");
+	snprintf(c->path, sizeof(c->path), "/bus.%u%.*s%s", s->buses.bus[node->bus].number,
+	         node->path[1] ? len : 0, node->path, property);
 	return s->buses.bus[node->bus].target;
 }
 
-/* Write the path of a property of the device. */
-void work_device_path(struct client *c, const char *property)
+int work_path(struct serve *s, struct client *c)
 {
-	snprintf(c->path, sizeof(c->path), "%.*s%s", (int)c->node.device_len, c->node.path,
-	         property);
+	return target_path(s, c, (int)strlen(c->node.path), "");
+}
+
+int work_device_path(struct serve *s, struct client *c, const char *property)
+{
+	return target_path(s, c, c->node.device_len, property);
 }
 
 /* Skip the targets that are down, for a directory to which each target adds its part. */
@@ -126,8 +129,8 @@ bool work_ask_type(struct serve *s, struct client *c)
 	if (node->has_rom) {
 		ask_structure(s, c, node->rom[0]);
 	} else {
-		work_device_path(c, "/family");
-		work_ask(s, c, STEP_FAMILY, BUS_READ, GUEST_ANY_LANE, type_room(c), 64);
+		work_ask(s, c, STEP_FAMILY, BUS_READ, work_device_path(s, c, "/family"),
+		         type_room(c), 64);
 	}
 	return true;
 }

@@ -12,8 +12,8 @@ void work_ask(struct serve *s, struct client *c, enum client_step step, enum bus
               uint8_t *data, uint32_t len);
 /* c->path as the target that has to answer counts its buses; returns the lane. */
 int work_path(struct serve *s, struct client *c);
-/* c->path of a property of the node's device. */
-void work_device_path(struct client *c, const char *property);
+/* The same, of a property of the node's device. */
+int work_device_path(struct serve *s, struct client *c, const char *property);
 /* False: a reload went on while the engine had the request, and targets may have other numbers. */
 bool work_same_targets(const struct serve *s, const struct client *c);
 /* Move c->target up to the next target that is up, for what each target has its part of. */

@@ -2,6 +2,7 @@
 /* WRITE: to a device, to all targets, or as a command to the table. */
 #include <errno.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "src/daemon/serve/answer.h"
 #include "src/daemon/serve/client.h"
@@ -156,6 +157,16 @@ static bool changes_output(struct serve *s, struct client *c)
 	return true;
 }
 
+/* An alias may name the device of an output: its target knows. False: there is nothing to ask. */
+static bool ask_whose(struct serve *s, struct client *c)
+{
+	if (!c->node.has_device || c->node.has_rom || !kept_has_outputs(s->kept))
+		return false;
+	work_ask(s, c, STEP_WHOSE, BUS_READ, work_device_path(s, c, "/address"), client_room(c),
+	         64);
+	return true;
+}
+
 void work_write(struct serve *s, struct client *c)
 {
 	const struct node *node = &c->node;
@@ -184,8 +195,31 @@ void work_write(struct serve *s, struct client *c)
 			answer_error(s, c, -EINVAL);
 		else if (name)
 			work_write_command(s, c);
-		else if (!changes_output(s, c) && !work_ask_type(s, c))
+		else if (!changes_output(s, c) && !ask_whose(s, c) && !work_ask_type(s, c))
 			work_write_target(s, c);
+	}
+}
+
+void work_write_named(struct serve *s, struct client *c, int err)
+{
+	char id[ROM_TEXT_MAX], path[NODE_PATH_MAX + ROM_TEXT_MAX];
+	uint8_t rom[ROM_LEN];
+	int bus = c->node.bus;
+
+	if (!err && rom_parse((const char *)client_room(c), c->guest.answer.len, rom))
+		err = -EIO;
+	if (err) {
+		answer_error(s, c, err);
+		return;
+	}
+	rom_print(rom, ROM_F_I, id);
+	snprintf(path, sizeof(path), "/%s%s", id, c->node.path + c->node.device_len);
+	if (kept_signal(s->kept, path, true) >= 0 || kept_changes(s->kept, path) >= 0) {
+		node_parse(path, strlen(path), &c->node);
+		c->node.bus = bus;
+		work_write(s, c);
+	} else if (!work_ask_type(s, c)) {
+		work_write_target(s, c);
 	}
 }
 

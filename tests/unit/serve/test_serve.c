@@ -301,6 +301,15 @@ static void test_an_input_from_before_a_write_to_its_device_does_not_answer(void
 	TEST_ASSERT_EQUAL_STRING("        24.5", data);
 }
 
+static void give_address(const char *asked, const char *address)
+{
+	struct engine_guest *g = next_guest();
+
+	TEST_ASSERT_EQUAL_STRING(asked, g->path);
+	TEST_ASSERT_EQUAL_INT(BUS_READ, g->op);
+	give(g, address);
+}
+
 /* An alias may name any device, also where its family was asked for to convert the units. */
 static void test_a_write_by_an_alias_forgets_what_was_read_in_all_units(void)
 {
@@ -313,6 +322,7 @@ static void test_a_write_by_an_alias_forgets_what_was_read_in_all_units(void)
 	give(next_guest(), "DS18B20");
 	TEST_ASSERT_EQUAL_INT(7, answer(fd));
 	TEST_ASSERT_EQUAL_INT(n, send(fd, frame, (size_t)n, MSG_NOSIGNAL));
+	give_address("/kitchen/address", "28551DDF03000034");
 	g = next_guest();
 	TEST_ASSERT_EQUAL_STRING("/kitchen/family", g->path);
 	give(g, "28");
@@ -566,6 +576,47 @@ static void test_a_command_is_waited_for_over_a_reload(void)
 	TEST_ASSERT_EQUAL_INT(0, answer(fd));
 }
 
+/* Beside owsd a write would show an output as good that is another. */
+static void test_an_alias_of_the_device_of_an_output_is_that_device(void)
+{
+	struct engine_guest *g;
+
+	command("/pump/PIO.0");
+	give_address("/pump/address", "29551DDF03000009");
+	show_output(2, stamp_of(2));
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	command("/pump/PIO.BYTE");
+	give_address("/pump/address", "29551DDF03000009");
+	TEST_ASSERT_EQUAL_INT(-30, answer(fd));
+	TEST_ASSERT_NULL(port->take(port->ctx));
+	/* another property of it, and another device */
+	command("/pump/latch.0");
+	give_address("/pump/address", "29551DDF03000009");
+	g = next_guest();
+	TEST_ASSERT_EQUAL_STRING("/pump/latch.0", g->path);
+	TEST_ASSERT_EQUAL_INT(BUS_WRITE, g->op);
+	g->answer = (struct bus_answer){.len = 1};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	command("/lamp/PIO.0");
+	give_address("/lamp/address", "28551DDF03000034");
+	g = next_guest();
+	TEST_ASSERT_EQUAL_STRING("/lamp/PIO.0", g->path);
+	g->answer = (struct bus_answer){.len = 1};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	/* nobody knows which device it is */
+	command("/lamp/PIO.0");
+	g = next_guest();
+	g->answer = (struct bus_answer){.err = -ENOENT};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_LESS_THAN_INT32(0, answer(fd));
+	command("/lamp/PIO.0");
+	give_address("/lamp/address", "2955");
+	TEST_ASSERT_EQUAL_INT(-5, answer(fd));
+	TEST_ASSERT_NULL(port->take(port->ctx));
+}
+
 /* Just then: the new image is shown, and the server has not been told yet. */
 static void test_a_path_means_its_own_output_in_the_middle_of_a_reload(void)
 {
@@ -647,6 +698,7 @@ int main(void)
 	RUN_TEST(test_the_room_of_a_look_for_buses_is_kept_until_it_is_back);
 	RUN_TEST(test_a_list_that_was_made_while_targets_changed_is_none);
 	RUN_TEST(test_a_command_is_waited_for_over_a_reload);
+	RUN_TEST(test_an_alias_of_the_device_of_an_output_is_that_device);
 	RUN_TEST(test_a_path_means_its_own_output_in_the_middle_of_a_reload);
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
 	RUN_TEST(test_directories_wait_for_each_other_when_all_rooms_are_taken);
