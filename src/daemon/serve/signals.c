@@ -52,10 +52,19 @@ static void room_for_alarms(struct signals *signals)
 	signals->seen_room = items;
 }
 
-/* Open the new image after a reload; until the reload is done the old image is the right one. */
+/*
+ * Open the new image after a reload; until the reload is done the old image is the right one. Where
+ * owsd has no seat for who commands, reading goes on without, and the next command asks for one.
+ */
 static void signals_follow(struct signals *signals)
 {
-	if (handle_state(signals->h) && ows_reopen(signals->h) == 0)
+	int err = handle_state(signals->h) ? ows_reopen(signals->h) : -ENOENT;
+
+	if (err && err != -ENOENT) {
+		meet_leave(signals->h);
+		err = ows_reopen(signals->h);
+	}
+	if (!err)
 		room_for_alarms(signals);
 }
 
@@ -308,6 +317,8 @@ int signals_applied(struct signals *signals, const char *name, struct signals_co
 		command->record = (unsigned)id.record;
 		command->generation = h->map.image->generation;
 	}
+	if (!h->give.base) /* this controller was refused after the reload */
+		return -EIO;
 	own = give_slot(&h->give, command->record);
 	applied = give_applied(&h->give, command->record);
 	if (applied && (int32_t)(applied - command->stamp) >= 0)

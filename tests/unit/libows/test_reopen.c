@@ -246,6 +246,37 @@ static void test_a_reader_that_asks_for_a_descriptor_is_woken_by_it(void)
 	ows_close(reader);
 }
 
+static void test_a_reader_that_is_refused_a_descriptor_goes_on_without(void)
+{
+	struct ows_value v;
+	struct ows *reader;
+	int fd, b;
+
+	TEST_ASSERT_EQUAL(0, ows_open(in.name, OWS_READ, &reader));
+	b = ows_find(reader, "b");
+	fd = ows_fd(reader);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	controller_applied(instance_controller(&in, 1), 2, 9);
+	door_lie(in.door, DOOR_REFUSES);
+	instance_reload(&in, after, 3);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL(0, reopen(reader));
+	TEST_ASSERT_EQUAL_MESSAGE(-EACCES, reopen(h), "it commands");
+	instance_put(&in, 2, 1, ows_now());
+	TEST_ASSERT_EQUAL(0, ows_get(reader, b, ows_now(), &v));
+	TEST_ASSERT_EQUAL_HEX8(OWS_Q_GOOD, v.quality);
+	TEST_ASSERT_EQUAL(0, v.applied);
+	TEST_ASSERT_EQUAL(fd, ows_fd(reader));
+	door_lie(in.door, DOOR_HONEST);
+	instance_reload(&in, before, 3);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL(0, reopen(reader));
+	TEST_ASSERT_EQUAL(fd, ows_fd(reader));
+	TEST_ASSERT_TRUE(controller_waits(instance_controller(&in, 2)));
+	TEST_ASSERT_EQUAL(0, reopen(h));
+	ows_close(reader);
+}
+
 /* How often poll() finds the descriptor readable in half a second, when asked anew each time. */
 static int wakes(struct ows *reader)
 {
@@ -525,6 +556,7 @@ int main(void)
 	RUN_TEST(test_a_controller_that_never_beat_comes_back_without_a_beat);
 	RUN_TEST(test_while_nobody_listens_the_old_image_stays_readable);
 	RUN_TEST(test_a_reader_that_asks_for_a_descriptor_is_woken_by_it);
+	RUN_TEST(test_a_reader_that_is_refused_a_descriptor_goes_on_without);
 	RUN_TEST(test_a_connected_sleeper_wakes_by_its_descriptor);
 	RUN_TEST(test_a_descriptor_whose_owsd_has_ended_wakes_only_now_and_then);
 	RUN_TEST(test_without_any_news_the_descriptor_wakes_by_itself);

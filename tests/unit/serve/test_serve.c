@@ -97,6 +97,12 @@ static void fill(struct config *to, struct config_item *its, const struct instan
 	                      .serve.socket = path};
 }
 
+/* The one that came last. */
+static unsigned controller(void)
+{
+	return instance_controllers(&in) - 1;
+}
+
 /* As the engine shows an output: enabled, and the last command that reached the bus. */
 static void show_output(uint32_t record, uint32_t applied)
 {
@@ -104,7 +110,7 @@ static void show_output(uint32_t record, uint32_t applied)
 	struct ows_attrs attrs = {.flags = OWS_ATTR_WRITE_ENABLE};
 
 	if (applied)
-		controller_applied(instance_controller(&in, 0), record, applied);
+		controller_applied(instance_controller(&in, controller()), record, applied);
 	image_publish(&in.image, record, &sample, &attrs, NULL);
 	image_news(&in.image);
 }
@@ -552,12 +558,12 @@ static uint32_t stamp_of(uint32_t record)
 
 	for (int i = 0; i < 60000 && !found; i++) {
 		if (instance_controllers(&in) > 0)
-			found = word_get(&instance_slot(&in, 0, record)->stamp);
+			found = word_get(&instance_slot(&in, controller(), record)->stamp);
 		if (!found)
 			usleep(1000); /* pace */
 	}
 	TEST_ASSERT_NOT_EQUAL_UINT32(0, found);
-	controller_taken(instance_controller(&in, 0), record, found, 0);
+	controller_taken(instance_controller(&in, controller()), record, found, 0);
 	return found;
 }
 
@@ -573,6 +579,31 @@ static void test_a_command_is_waited_for_over_a_reload(void)
 	serve_reload(serve, &other_config, &in.image, ports);
 	TEST_ASSERT_TRUE(is_silent(fd));
 	show_output(3, stamp);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+}
+
+/* Another program of the user has the last seat; values need none. */
+static void test_signals_are_read_after_a_reload_though_the_server_may_not_command(void)
+{
+	static const int ports[] = {0};
+
+	door_lie(in.door, DOOR_REFUSES);
+	command("/signals/relay");
+	TEST_ASSERT_LESS_THAN_INT32(0, answer(fd));
+	instance_reload(&in, other_signals, 3);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL_INT(0, serve_prepare(serve, &other_config));
+	serve_reload(serve, &other_config, &in.image, ports);
+	instance_put_double(&in, 2, 21.5, ows_now());
+	for (int i = 0, n = 0; i < 60000 && n <= 0; i++) {
+		ask(fd, FRAME_READ, "/signals/room");
+		n = answer(fd);
+	}
+	TEST_ASSERT_EQUAL_STRING("21.5", data);
+	door_lie(in.door, DOOR_HONEST);
+	show_output(3, 0);
+	command("/signals/relay");
+	show_output(3, stamp_of(3));
 	TEST_ASSERT_EQUAL_INT(0, answer(fd));
 }
 
@@ -698,6 +729,7 @@ int main(void)
 	RUN_TEST(test_the_room_of_a_look_for_buses_is_kept_until_it_is_back);
 	RUN_TEST(test_a_list_that_was_made_while_targets_changed_is_none);
 	RUN_TEST(test_a_command_is_waited_for_over_a_reload);
+	RUN_TEST(test_signals_are_read_after_a_reload_though_the_server_may_not_command);
 	RUN_TEST(test_an_alias_of_the_device_of_an_output_is_that_device);
 	RUN_TEST(test_a_path_means_its_own_output_in_the_middle_of_a_reload);
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
