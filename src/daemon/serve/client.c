@@ -134,7 +134,8 @@ static void client_close(struct serve *s, struct client *c)
 
 	if (c->fd < 0)
 		return;
-	if ((!c->network || c->budget.over) && c->watched)
+	/* while a porter that begins has it too, closing it does not take it out */
+	if (c->watched)
 		epoll_ctl(s->epoll_fd, EPOLL_CTL_DEL, c->fd, NULL);
 	client_part(s, c->fd, may_close_here(s, c));
 	c->fd = -1;

@@ -59,8 +59,11 @@ void seat_release(struct control *c, struct control_seat *p)
 	held_free(c, p->peer.uid, &p->now, false);
 	held_free(c, p->peer.uid, &p->next, false);
 	peer_forget(&p->peer);
-	if (p->death >= 0)
+	if (p->death >= 0) {
+		/* while a porter that begins has it too, closing it does not take it out */
+		epoll_ctl(c->epoll, EPOLL_CTL_DEL, p->death, NULL);
 		close(p->death);
+	}
 	p->death = -1;
 	hang_up_on(c, p);
 	/*

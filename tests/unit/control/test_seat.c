@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* The end of a seat: what its state makes of it, and that it counts once. */
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -70,6 +72,26 @@ static void test_one_that_the_engine_takes_this_moment_goes_later(void)
 	TEST_ASSERT_TRUE(seat->leaves);
 }
 
+/* A porter that owsd starts has copies of all that owsd has, until it closes them. */
+static void test_the_death_of_who_has_left_is_reported_of_nobody(void)
+{
+	struct epoll_event event;
+	int copy;
+
+	control.epoll = epoll_create1(EPOLL_CLOEXEC);
+	control_enter(seat, CONTROL_HALF);
+	seat->death = eventfd(0, EFD_CLOEXEC);
+	copy = dup(seat->death);
+	TEST_ASSERT_EQUAL_INT(0, seat_watch(&control, seat, seat->death, 1));
+	TEST_ASSERT_EQUAL_INT(1, epoll_wait(control.epoll, &event, 1, 0));
+	seat_drop(&control, seat, CONTROL_hung_up);
+	TEST_ASSERT_EQUAL_INT(CONTROL_FREE, control_state_of(seat));
+	TEST_ASSERT_EQUAL_INT(0, eventfd_write(copy, 1));
+	TEST_ASSERT_EQUAL_INT(0, epoll_wait(control.epoll, &event, 1, 0));
+	close(copy);
+	close(control.epoll);
+}
+
 static void test_a_program_without_a_word_waits_and_one_that_has_gone_does_not(void)
 {
 	int ends[2];
@@ -93,6 +115,7 @@ int main(void)
 	RUN_TEST(test_a_program_that_has_not_joined_leaves_its_seat_free);
 	RUN_TEST(test_one_that_the_engine_has_leaves_by_the_engine);
 	RUN_TEST(test_one_that_the_engine_takes_this_moment_goes_later);
+	RUN_TEST(test_the_death_of_who_has_left_is_reported_of_nobody);
 	RUN_TEST(test_a_program_without_a_word_waits_and_one_that_has_gone_does_not);
 	return UNITY_END();
 }
