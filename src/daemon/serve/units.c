@@ -127,18 +127,18 @@ static bool looks_padded(const char *text, size_t len)
 
 int units_show(char type, uint32_t flags, char *text, size_t len, size_t room)
 {
-	char out[1024];
-	int n;
-
 	if (len && units_convert(type, flags)) {
 		struct scale scale = scale_of(type, flags);
+		/* two bytes ("1,") become 14 at most; what is not touched costs no memory */
+		size_t most = 8 * len + 16 < room ? 8 * len + 16 : room;
+		char *from = text + most - len;
+		int n;
 
-		n = convert_each(&scale, false, text, len, out, sizeof(out));
+		/* from the end to the beginning, in place: the list of a logger is long */
+		memmove(from, text, len);
+		n = convert_each(&scale, false, from, len, text, most - len);
 		if (n < 0)
 			return n == -EINVAL ? -EIO : n;
-		if ((size_t)n > room)
-			return -EMSGSIZE;
-		memcpy(text, out, (size_t)n);
 		len = (size_t)n;
 	}
 	if (flags & FRAME_TRIM && (is_number_type(type) || (!type && looks_padded(text, len))))

@@ -20,7 +20,6 @@
 
 /* The largest READ that a client may ask for. */
 #define READ_MOST 100050
-#define LONG_VALUE 4096
 
 /* Convert the value in the room from the bus's units into the client's, and send it. */
 static void work_show(struct serve *s, struct client *c)
@@ -45,8 +44,8 @@ static void work_read_answered(struct serve *s, struct client *c, int err)
 	}
 	c->value_len = c->guest.answer.len;
 	kept_add(s->kept, &c->node, c->guest.answer.measured_ns, client_room(c), c->value_len);
-	/* no property with a scale is so long; the type needs room after the value */
-	if (c->value_len > LONG_VALUE && !c->node.type && units_asked(c->request.flags))
+	if (c->value_len > client_room_size(c) - WORK_TYPE_MOST && !c->node.type &&
+	    units_asked(c->request.flags))
 		answer_error(s, c, -EMSGSIZE);
 	else if (!work_ask_type(s, c))
 		work_show(s, c);

@@ -117,7 +117,7 @@ static void ask_structure(struct serve *s, struct client *c, uint8_t family)
 {
 	snprintf(c->path, sizeof(c->path), "/structure/%02X%s", family,
 	         c->node.path + c->node.device_len);
-	work_ask(s, c, STEP_STRUCTURE, BUS_READ, GUEST_ANY_LANE, type_room(c), 64);
+	work_ask(s, c, STEP_STRUCTURE, BUS_READ, GUEST_ANY_LANE, type_room(c), WORK_TYPE_MOST);
 }
 
 bool work_ask_type(struct serve *s, struct client *c)
@@ -130,7 +130,7 @@ bool work_ask_type(struct serve *s, struct client *c)
 		ask_structure(s, c, node->rom[0]);
 	} else {
 		work_ask(s, c, STEP_FAMILY, BUS_READ, work_device_path(s, c, "/family"),
-		         type_room(c), 64);
+		         type_room(c), WORK_TYPE_MOST);
 	}
 	return true;
 }

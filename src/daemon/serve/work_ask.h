@@ -22,6 +22,8 @@ bool work_is_directory(const struct node *node);
 /* Refuse a directory, which can be neither read nor written, if it exists. */
 void work_refuse_directory(struct serve *s, struct client *c);
 
+/* READ: the room that the type needs after the value. */
+#define WORK_TYPE_MOST 64
 /*
  * Ask for the type when the client wants a scale and the server does not know whether the value has
  * one. False: there is nothing to ask.

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests of values converted between the scales of buses and clients. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 #include <unity.h>
 
@@ -55,9 +56,30 @@ static void test_lists_are_converted_element_by_element(void)
 {
 	TEST_ASSERT_EQUAL_STRING("          32,         212",
 	                         show('t', FAHRENHEIT, "           0,         100"));
+	TEST_ASSERT_EQUAL_STRING("        33.8,        33.8,        33.8",
+	                         show('t', FAHRENHEIT, "1,1,1"));
 	TEST_ASSERT_EQUAL_STRING("47,48", show('u', TRIM, "          47,          48"));
 	TEST_ASSERT_EQUAL_STRING("32,212",
 	                         show('t', FAHRENHEIT | TRIM, "           0,         100"));
+}
+
+/* log/temperature of a DS1921 */
+static void test_the_list_of_a_logger_is_converted(void)
+{
+	enum { COUNT = 2048 };
+	static char list[2 * 13 * COUNT];
+	size_t len = 0;
+	int n;
+
+	for (int i = 0; i < COUNT; i++)
+		len += (size_t)sprintf(list + len, "%s          20", i ? "," : "");
+	n = units_show('t', FAHRENHEIT, list, len, sizeof(list));
+	TEST_ASSERT_EQUAL_INT(13 * COUNT - 1, n);
+	for (int i = 0; i < COUNT; i++)
+		TEST_ASSERT_EQUAL_STRING_LEN("          68", list + i * 13, 12);
+	n = units_show('t', FAHRENHEIT | TRIM, list, len, sizeof(list));
+	TEST_ASSERT_EQUAL_INT(6 * COUNT - 1, n); /* 154.4 */
+	TEST_ASSERT_EQUAL_INT(-EMSGSIZE, units_show('t', FAHRENHEIT, list, len, len + 100));
 }
 
 static void test_padding_goes_where_there_are_numbers(void)
@@ -143,6 +165,7 @@ int main(void)
 	RUN_TEST(test_values_are_shown_in_the_scale_asked_for);
 	RUN_TEST(test_a_difference_has_no_zero_point);
 	RUN_TEST(test_lists_are_converted_element_by_element);
+	RUN_TEST(test_the_list_of_a_logger_is_converted);
 	RUN_TEST(test_padding_goes_where_there_are_numbers);
 	RUN_TEST(test_what_is_no_number_is_not_converted);
 	RUN_TEST(test_what_is_written_comes_back_in_degrees_celsius);
