@@ -201,8 +201,7 @@ static int parse_date(const char *text, double *number)
 	return -EINVAL;
 }
 
-/* Decimal digits: what else strtod() takes is no value of a property. */
-static int parse_decimal(const char *text, double *number)
+int text_decimal(const char *text, double *number)
 {
 	char *end;
 
@@ -286,7 +285,7 @@ static int parse_text(const struct property *property, int extension, const char
 	if (property_form(property->type) == FORM_YESNO && extension != EXTENSION_BYTE &&
 	    parse_word(copy, number) == 0)
 		return 0;
-	return parse_decimal(copy, number) || !takes(property, extension, *number) ? -EINVAL : 0;
+	return text_decimal(copy, number) || !takes(property, extension, *number) ? -EINVAL : 0;
 }
 
 static void set_element(const struct property *property, int element, double number,

@@ -52,6 +52,8 @@ size_t text_end(const char *text, size_t len);
  */
 #define TEXT_ROOM 64
 bool text_trimmed(const char *text, size_t len, char copy[TEXT_ROOM]);
+/* Decimal digits: what else strtod() takes is no value of a property. Returns 0 or -EINVAL. */
+int text_decimal(const char *text, double *number);
 /*
  * The other way. With one element of an aggregate only that element is set: the others have to be
  * in txn. -EINVAL, and txn is as before: the text is not the whole of a value in the range of the

@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Scales of temperature and pressure that a client of the served protocol asks for. */
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "hal/chips/format.h"
@@ -62,12 +60,9 @@ bool units_convert(char type, uint32_t flags)
 /* Parse one element, without the blanks of its padding. */
 static int parse_element(const char *text, size_t len, double *number)
 {
-	char copy[TEXT_ROOM], *end;
+	char copy[TEXT_ROOM];
 
-	if (!text_trimmed(text, len, copy))
-		return -EINVAL;
-	*number = strtod(copy, &end);
-	return end == copy || *end || !isfinite(*number) ? -EINVAL : 0;
+	return text_trimmed(text, len, copy) ? text_decimal(copy, number) : -EINVAL;
 }
 
 static size_t element_length(const char *text, size_t len)

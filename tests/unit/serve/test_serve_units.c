@@ -107,6 +107,9 @@ static void test_what_is_written_comes_back_in_degrees_celsius(void)
 	TEST_ASSERT_EQUAL_STRING_LEN("0,20", out, n);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', KELVIN, "warm", 4, out, sizeof(out)));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', KELVIN, "300abc", 6, out, sizeof(out)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', FAHRENHEIT, "0x50", 4, out, sizeof(out)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', FAHRENHEIT, "inf", 3, out, sizeof(out)));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', FAHRENHEIT, "1e999", 5, out, sizeof(out)));
 	n = units_take('t', FAHRENHEIT, " 212 \n", 7, out, sizeof(out));
 	TEST_ASSERT_EQUAL_STRING_LEN("100", out, n);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, units_take('t', KELVIN, "", 0, out, sizeof(out)));
