@@ -75,7 +75,8 @@ struct ows {
 
 	/* The controller: of OWS_CONTROL, and of OWS_READ after ows_fd() */
 	struct join join;
-	int64_t joined_ns;          /* the start of the owsd that the image was of at that time */
+	int64_t joined_ns;  /* the start of the owsd that the image was of at that time */
+	int64_t awaited_ns; /* when it began to wait for the welcome of a reload; 0: it does not */
 	struct give give, next;     /* next: taken, but its image is not mapped yet */
 	uint32_t *mine;             /* 1; in a forked child 0. NULL: no controller */
 	uint32_t stamp;             /* of the last command */

@@ -8,6 +8,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "src/memory/libows/alive.h"
 #include "src/memory/libows/command.h"
 #include "src/memory/libows/handle.h"
 #include "src/memory/libows/meet.h"
@@ -173,6 +174,22 @@ static int take_memory(struct ows *h, const struct ows_map *map, const struct ow
 	return 0;
 }
 
+/*
+ * A welcome after a reload takes milliseconds. It is lost if owsd-porter is killed that moment: end
+ * the connection, so that the next call connects as the same controller.
+ */
+static void give_up_lost(struct ows *h)
+{
+	int64_t now_ns = ows_now();
+
+	if (!h->awaited_ns)
+		h->awaited_ns = now_ns;
+	if (handle_age(now_ns, h->awaited_ns) < ALIVE_LEAST_NS)
+		return;
+	h->awaited_ns = 0;
+	join_end(&h->join);
+}
+
 int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 {
 	/* An owsd that was killed with a thread stuck in the kernel hangs up on nobody */
@@ -188,8 +205,10 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 
 		/* Take all that have come, so that the last one stays */
 		err = join_receive(&h->join, has ? 0 : until_ns, &welcome, &memory);
-		if (err == -EAGAIN && has)
+		if (err == -EAGAIN && has) {
+			h->awaited_ns = 0;
 			return 0;
+		}
 		if (!err)
 			err = take_memory(h, map, &welcome, memory);
 		else if (err == -ENOTCONN && !connected) {
@@ -197,6 +216,8 @@ int meet(struct ows *h, const struct ows_map *map, int64_t until_ns)
 			err = connect_again(h, map);
 		}
 	}
+	if (err == -EAGAIN && !h->join.new)
+		give_up_lost(h);
 	return err == -ENOTCONN ? -ENOENT : err;
 }
 

@@ -262,7 +262,7 @@ void door_reload(struct door *door, uint32_t generation, uint32_t start_id, cons
 		make_memory(door, controller, i + 1);
 		controller_copy(&controller->memory, &old, rows);
 		munmap(old.base, before.header.size);
-		if (!controller->gone)
+		if (!controller->gone && door->lie != DOOR_LOSES)
 			send_welcome(door, controller, i + 1, 1);
 	}
 	controller_layout_free(&before);

@@ -29,6 +29,7 @@ enum door_lie {
 	DOOR_OTHER_MEMORY, /* the header is none */
 	DOOR_OTHER_START,  /* of another generation than the image */
 	DOOR_OUTSIDE,      /* its slots lie outside */
+	DOOR_LOSES,        /* it sends no welcome after a reload */
 	DOOR_LIES          /* how many there are */
 };
 

@@ -105,7 +105,7 @@ static void test_no_descriptor_is_left_behind(void)
 		ows_close(h);
 		door_wait_gone(in.door, instance_controllers(&in) - 1);
 	}
-	TEST_ASSERT_EQUAL(1, opened);
+	TEST_ASSERT_EQUAL(2, opened); /* and the one that loses only what comes later */
 	/* the door itself keeps three for each that it has welcomed */
 	TEST_ASSERT_EQUAL(before + 3 * (instance_controllers(&in) - 1), descriptors());
 }

@@ -125,6 +125,20 @@ static void test_of_several_reloads_the_last_counts(void)
 	TEST_ASSERT_EQUAL_INT64(1, instance_command(&in, 0, 2).value);
 }
 
+/* As when owsd-porter is killed with the welcome in its queue. */
+static void test_a_welcome_that_is_lost_is_asked_for_by_another_connection(void)
+{
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 1, NULL));
+	door_lie(in.door, DOOR_LOSES);
+	instance_reload(&in, after, 3);
+	instance_lives_on(&in);
+	TEST_ASSERT_EQUAL(0, reopen(h));
+	TEST_ASSERT_EQUAL(2, instance_controllers(&in));
+	TEST_ASSERT_EQUAL_STRING("token 1", (char *)door_controller(in.door, 1)->hello.token);
+	TEST_ASSERT_EQUAL(0, ows_set(h, ows_find(h, "b"), 0, NULL));
+	TEST_ASSERT_EQUAL_UINT32(2, instance_command(&in, 1, 2).stamp);
+}
+
 /* The owsd after one that was killed. */
 static void start_next(void)
 {
@@ -551,6 +565,7 @@ int main(void)
 	RUN_TEST(test_ids_stay_right_over_a_reload);
 	RUN_TEST(test_a_command_goes_to_the_same_signal_after_a_reload);
 	RUN_TEST(test_of_several_reloads_the_last_counts);
+	RUN_TEST(test_a_welcome_that_is_lost_is_asked_for_by_another_connection);
 	RUN_TEST(test_after_a_restart_the_controller_comes_back_with_its_token_and_beats);
 	RUN_TEST(test_an_owsd_that_was_killed_and_hangs_up_on_nobody_is_left);
 	RUN_TEST(test_a_controller_that_never_beat_comes_back_without_a_beat);
