@@ -212,22 +212,22 @@ static void open_forget(struct ows_history *h)
 	h->signal_count = h->session_count = 0;
 }
 
-/* Each row into a list that grows. Returns how many, or a negative errno. */
-static int read_rows(struct ows_history *h, const char *text, void **list, size_t size,
+/* Each row into a list that grows; *count are in it after an error too. */
+static int read_rows(struct ows_history *h, const char *text, void **list, int *count, size_t size,
                      int (*take)(sqlite3_stmt *from, void *to))
 {
 	sqlite3_stmt *from;
-	int count = 0, room = 0, got;
+	int room = 0, got;
 	int err = sql_errno(h->db, sqlite3_prepare_v2(h->db, text, -1, &from, NULL));
 
 	if (err)
 		return err;
 	while ((got = sql_next(from)) == 1) {
-		if (count == ROWS_MOST) {
+		if (*count == ROWS_MOST) {
 			got = -EBADMSG;
 			break;
 		}
-		if (count == room) {
+		if (*count == room) {
 			void *more = reallocarray(*list, (size_t)(room += room + 16), size);
 
 			if (!more) {
@@ -236,13 +236,13 @@ static int read_rows(struct ows_history *h, const char *text, void **list, size_
 			}
 			*list = more;
 		}
-		memset((char *)*list + (size_t)count * size, 0, size);
-		got = take(from, (char *)*list + (size_t)count++ * size);
+		memset((char *)*list + (size_t)*count * size, 0, size);
+		got = take(from, (char *)*list + (size_t)(*count)++ * size);
 		if (got < 0)
 			break;
 	}
 	sqlite3_finalize(from);
-	return got < 0 ? got : count;
+	return got;
 }
 
 static int take_session(sqlite3_stmt *from, void *to)
@@ -335,24 +335,24 @@ static int open_look(struct ows_history *h)
 	if (err >= 0)
 		err = read_places(h);
 	if (!err)
-		err = h->session_count = read_rows(
+		err = read_rows(
 			h,
 			"select start, boot, base, date, trusted, (select max(reason) from gap where"
 			" gap.until = session.start and signal = 0) from session order by start",
-			(void **)&h->sessions, sizeof(*h->sessions), take_session);
-	if (err >= 0)
-		err = h->signal_count = read_rows(
+			(void **)&h->sessions, &h->session_count, sizeof(*h->sessions),
+			take_session);
+	if (!err)
+		err = read_rows(
 			h,
 			h->version < HISTORY_SCHEMA_IDENTITY
 				? "select signal, name, unit, null, null, type, output, decimals"
 				  " from signal"
 				: "select signal, name, unit, identity, former, type, output,"
 				  " decimals from signal",
-			(void **)&h->signals, sizeof(*h->signals), take_signal);
+			(void **)&h->signals, &h->signal_count, sizeof(*h->signals), take_signal);
 	sqlite3_exec(h->db, "commit", NULL, NULL, NULL);
 	if (err < 0) {
-		h->session_count = h->session_count < 0 ? 0 : h->session_count;
-		h->signal_count = 0;
+		open_forget(h);
 		return err;
 	}
 	for (int i = 0; i < h->session_count; i++)
