@@ -279,7 +279,9 @@ void directory_add_rest(struct directory *directory, const struct node *node,
 	char name[16];
 
 	for (unsigned i = 0; i < buses->count; i++)
-		directory_add(directory, name, (size_t)snprintf(name, sizeof(name), "bus.%u", i));
+		if (buses->bus[i].target != BUSES_NO_TARGET)
+			directory_add(directory, name,
+			              (size_t)snprintf(name, sizeof(name), "bus.%u", i));
 	for (int i = node->uncached ? IN_UNCACHED : 0; in_root[i]; i++)
 		directory_add(directory, in_root[i], strlen(in_root[i]));
 }

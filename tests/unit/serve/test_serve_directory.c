@@ -86,6 +86,18 @@ static void test_buses_keep_their_numbers(void)
 	TEST_ASSERT_EQUAL_INT(-1, buses_parse("bus.", 4));
 }
 
+static void test_the_root_lists_no_bus_of_a_target_that_a_reload_removed(void)
+{
+	struct frame_header h;
+
+	for (unsigned target = 0; target < 3; target++)
+		TEST_ASSERT_EQUAL_INT(target, buses_number(&buses, target, 0));
+	buses_renumber(&buses, (const int[]){0, 2}, 2);
+	begin("/", 0);
+	directory_add_rest(directory, &node, &buses);
+	TEST_ASSERT_EQUAL_STRING_LEN("/bus.0,/bus.2,/uncached", formed(&h), 23);
+}
+
 static void test_names_are_in_the_format_and_below_the_path_that_the_client_wrote(void)
 {
 	struct frame_header h;
@@ -177,6 +189,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_devices_of_two_targets_are_listed_once);
 	RUN_TEST(test_buses_keep_their_numbers);
+	RUN_TEST(test_the_root_lists_no_bus_of_a_target_that_a_reload_removed);
 	RUN_TEST(test_names_are_in_the_format_and_below_the_path_that_the_client_wrote);
 	RUN_TEST(test_frames_come_one_by_one_and_then_an_empty_one);
 	RUN_TEST(test_an_empty_directory_has_no_data);
