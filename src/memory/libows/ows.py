@@ -28,6 +28,7 @@ import difflib
 import enum
 import errno
 import math
+import operator
 import os
 import sys
 import time
@@ -346,6 +347,14 @@ def _fail(err: int, what: str | None = None) -> NoReturn:
     raise kind(-err, SAYS.get(-err) or os.strerror(-err), what)
 
 
+def _whole(value: Any) -> int:
+    """The whole number that it is, of whatever type (NumPy's are no int); of another 2**63."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        return 2**63
+
+
 def _rights(instance: str, control: bool) -> str:
     """What this program has no right to, and who has."""
     h = ctypes.c_void_p()
@@ -659,8 +668,8 @@ class Ows:
             call, value_c = _lib.ows_set_text, _bytes(value, name)
         elif isinstance(value, (bytes, bytearray)) or not hasattr(value, "__float__"):
             raise TypeError(f"{name}: a number or a text is expected, not {value!r}")
-        elif isinstance(value, int) and -2**63 <= value < 2**63:
-            call, value_c = _lib.ows_set_integer, int(value)
+        elif -2**63 <= (whole := _whole(value)) < 2**63:
+            call, value_c = _lib.ows_set_integer, whole
         else:
             call, value_c = _lib.ows_set, float(value)
         err = call(self._handle(), ident, value_c, ctypes.byref(stamp))
