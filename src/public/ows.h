@@ -135,8 +135,8 @@ int ows_open(const char *instance, enum ows_mode mode, struct ows **h);
 int ows_open_as(const char *instance, enum ows_mode mode, const char *name, struct ows **h);
 /*
  * Close the handle, and say goodbye to owsd: its commands stay in force, also if it had promised a
- * beat. A program that ends without this is lost to owsd: if it had promised a beat, its outputs go
- * to their SafeValue when the promised time is over. NULL: does nothing.
+ * beat. A program that ends without this is lost to owsd, as one whose beat does not come.
+ * NULL: does nothing.
  */
 void ows_close(struct ows *h);
 
@@ -146,7 +146,7 @@ int64_t ows_now(void);
 /*
  * Look a name up: a signal ("room1", "OWS__room1"), a driver signal ("_TRANSACTIONS") or an
  * attribute ("room1_Age"). Returns an id >= 0, which stays right for the life of the handle, also
- * over ows_reopen(), or -ENOENT. Allocates at the first use of a name.
+ * over ows_reopen(), or -ENOENT. Allocates at the first use of a name: -ENOMEM.
  */
 int ows_find(struct ows *h, const char *name);
 
@@ -155,8 +155,8 @@ int ows_find(struct ows *h, const char *name);
  * cycle is enough; a now_ns older than two seconds is too old, and values newer than it are bad.
  * -ESTALE: owsd was restarted or reloaded, call ows_reopen(); *value is filled all the same, and
  * its quality is good only while the last heartbeat in the old image is younger than two seconds,
- * or three periods. -EAGAIN: no whole sample in 64 attempts (does not happen while owsd works as it
- * should). -ENOENT: the id's name is not in the image any more. -EACCES: write-only name.
+ * or three periods. -EAGAIN: no whole sample in 64 attempts (not while owsd is sound).
+ * -ENOENT: the id's name is not in the image any more. -EACCES: write-only name.
  */
 int ows_get(struct ows *h, int id, int64_t now_ns, struct ows_value *value);
 /*
@@ -185,7 +185,7 @@ int ows_set(struct ows *h, int id, double value, uint32_t *stamp);
 int ows_set_integer(struct ows *h, int id, int64_t value, uint32_t *stamp);
 int ows_set_text(struct ows *h, int id, const char *text, uint32_t *stamp);
 /*
- * All n values with one ring; none of them if one is refused. Errors as ows_set().
+ * All n values with one ring; none if one is refused. Errors as ows_set().
  */
 int ows_set_many(struct ows *h, const int *ids, const double *values, int n);
 
@@ -298,14 +298,15 @@ struct ows_cursor {
  * that is longer.
  * -ESTALE: owsd has reloaded, or another owsd has started: ows_reopen(); the next call returns
  * -EOVERFLOW. -EINVAL: n below 1. -ENOMEM (at the first use and after a reload). -EINTR.
+ * -EOPNOTSUPP: an older owsd.
  */
 int ows_changes(struct ows *h, struct ows_cursor *cursor, int *signals, int n,
                 int64_t timeout_ns);
 
 /*
  * Sleep until owsd publishes something newer than *news, at most timeout_ns (negative: no limit).
- * Start with *news = 0. Returns 1: news, 0: the time is over, -ESTALE as ows_get(), from the second
- * time on after a tenth of a second, -EINTR. Wakes once a second, to look for another image.
+ * Start with *news = 0. Returns 1: news, 0: the time is over, -ESTALE as ows_get(), the second time
+ * after a tenth of a second, -EINTR. Wakes once a second, to look for another image.
  */
 int ows_wait(struct ows *h, uint32_t *news, int64_t timeout_ns);
 /*
@@ -321,7 +322,8 @@ int ows_fd(struct ows *h);
 /*
  * Map the present image after -ESTALE, and get the memory for commands that belongs to it; after a
  * restart it connects again, as the same controller, and beats if it had promised to. Ids stay
- * right. System calls, allocates; waits for owsd's answer, 20 ms at most.
+ * right. System calls, allocates; waits for owsd's answer, 20 ms at most (a second while too
+ * many connect).
  * -ENOENT: they do not exist yet, try again in the next cycle (the old image stays readable);
  * -EPERM as ows_set(); all errors of ows_open(). An owsd that was killed cannot report its end: its
  * values turn bad by themselves, and when the next owsd has started, all calls return -ESTALE.
@@ -342,8 +344,7 @@ int ows_reopen(struct ows *h);
 int ows_reload(const char *instance, int64_t timeout_ns, char *why, size_t size);
 
 /*
- * How many signals there are: signals are 0 .. ows_count() - 1 in the order of the file; valid
- * until ows_reopen().
+ * Signals are 0 .. ows_count() - 1 in the order of the file, until ows_reopen().
  */
 int ows_count(const struct ows *h);
 
@@ -564,7 +565,7 @@ int ows_acknowledge(struct ows *h, int id);
  * bytes, or NULL. 0: unshelve it, which does nothing if it is not shelved. Waits until owsd has
  * done that, at most 2 seconds. Errors as ows_set(); -EOPNOTSUPP: it has no limit alarms; -ERANGE:
  * too many seconds; -ENOSPC: 64 are shelved; -EAGAIN: too many requests, again in a second;
- * -ETIMEDOUT.
+ * -ETIMEDOUT; -EBUSY: one that timed out still waits.
  */
 #define OWS_SHELVE_MAX (7 * 86400)
 int ows_shelve(struct ows *h, int id, uint32_t seconds, const char *why);

@@ -18,7 +18,7 @@
  *
  * A handle belongs to one thread at a time. All functions but the texts of words read files: they
  * block, allocate, and are not for real-time threads. All return 0 (or the count or index that is
- * stated) or a negative errno; none sets errno. Besides what is stated each that reads may return
+ * stated) or a negative errno; errno may change. Besides what is stated each that reads may return
  * -ENOMEM, -EIO or another error of the disk, -EAGAIN (another program has the file locked for
  * longer than two seconds), -EBADMSG (the file is damaged, or none that a recorder made) and
  * -ETIMEDOUT (it takes more of the processor than any recorder's file of that size does: two
