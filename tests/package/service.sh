@@ -25,8 +25,6 @@ status_says() { systemctl status --no-pager -n 40 owsd@HOUSE | grep -q -F "$1"; 
 got() { reads relays 5 && owsctl -n HOUSE get warm; }
 # InitValue, for who commanded the output has ended
 begins() { reads relays 0 && reads pins 189 && owsctl -n HOUSE get warm; }
-# InitValue, for who commanded the output has ended
-begins() { reads relays 0 && reads pins 189 && owsctl -n HOUSE get warm; }
 
 does 'the default instance comes up by itself, without a device' within 60 active owsd@OWS
 does 'and serves' within 10 owsctl list
@@ -144,6 +142,16 @@ does 'and is told' sh -c 'journalctl -b -u owsd@HOUSE | grep -q /etc/owsd/HOUSE.
 cp good.rio /etc/owsd/HOUSE.rio
 does 'mended, it comes up by itself' within 30 active owsd@HOUSE
 does 'with InitValue' within 60 begins
+
+for drop_in in *.conf; do
+	install -D -m 644 "$drop_in" "/etc/systemd/system/owsd@HOUSE.service.d/$drop_in"
+	systemctl daemon-reload
+	does "with $drop_in it starts" systemctl restart owsd@HOUSE
+	does 'and reads' within 60 begins
+	rm -r /etc/systemd/system/owsd@HOUSE.service.d
+done
+systemctl daemon-reload
+does 'without them too' systemctl restart owsd@HOUSE
 
 does 'all are stopped as one' systemctl stop owsd
 does 'the one' refused active owsd@HOUSE

@@ -99,6 +99,32 @@ def test_the_units_limits_leave_room_for_the_largest_owsd(scene):
     assert setting("LimitCORE") == "0"
 
 
+# What a drop-in of the examples takes away, as its page says
+TAKEN = {"local.conf": {("ReadWritePaths", "-/sys/devices")}, "realtime.conf": {("RestrictRealtime", "yes"),
+         ("ExecStart", "@SBINDIR@/owsd -n %i $OWSD_OPTIONS")}}
+# Of these keys the last value counts, of the others all of them
+ONE = {"RestrictRealtime", "LimitRTPRIO", "LimitMEMLOCK"}
+
+
+def joined(*files):
+    """Keys and values of [Service] as systemd reads a unit and its drop-ins: an empty value takes away
+    all that came before."""
+    values = collections.defaultdict(list)
+    for file in files:
+        for key, value in re.findall(r"^(\w+)=(.*)$", file.read_text().partition("[Service]")[2], re.M):
+            values[key] = values[key] + [value] if value and key not in ONE else [value][:bool(value)]
+    return {(key, value) for key, found in values.items() for value in found}
+
+
+def test_a_drop_in_takes_away_no_more_than_it_says(scene):
+    del scene
+    drop_ins = sorted((sandbox.UNITS / "examples").glob("*.conf"))
+    assert {file.name for file in drop_ins} > set(TAKEN)
+    unit = joined(sandbox.UNIT)
+    for file in drop_ins:
+        assert unit - joined(sandbox.UNIT, file) == TAKEN.get(file.name, set()), file
+
+
 def test_the_rules_hold(scene):
     """The filter is no empty one: what it forbids fails, and so does a foreign address."""
     tries = {"os.nice(1)": False, "os.chroot('/')": False, "os.sched_setscheduler(0, 1, os.sched_param(1))":
