@@ -49,7 +49,7 @@ class Machine:
     modules = """vhci-hcd i2c-tiny-usb i2c-dev wire ds2482 w1_therm w1_smem w1_ds2405 w1_ds2406
     w1_ds2408 w1_ds2413 w1_ds2423 w1_ds2430 w1_ds2431 w1_ds2433 w1_ds2438
     w1_ds2780 w1_ds2781 w1_ds28e04 w1_ds28e17 ds2760_battery ds2490 overlay
-    virtio_pci virtio_net""".split()
+    virtio_pci virtio_net usbserial cdc_acm""".split()
 
     def kernel_package(self, cache):
         """Name and version of the package that Debian's meta package stands for."""

@@ -30,6 +30,17 @@ does 'the default instance comes up by itself, without a device' within 60 activ
 does 'and serves' within 10 owsctl list
 does 'its exposure is below 2.0' systemd-analyze security --threshold=20 --no-pager owsd@OWS
 
+# opens MAJOR: what runs beside owsd@OWS may open such a device, were there one
+opens() {
+	mknod /dev/owsd-test c "$1" 9
+	sh -c 'echo $$ >"/sys/fs/cgroup$1/cgroup.procs" && : <>/dev/owsd-test' sh \
+		"$(systemctl show -P ControlGroup owsd@OWS)" 2>/tmp/opens
+	rm /dev/owsd-test
+	cat /tmp/opens && grep -q 'No such device' /tmp/opens
+}
+does 'of a console it may open none' refused opens 29
+for major in 89 166 188; do does "an adapter of major $major may come later" opens $major; done
+
 # auto would take the chips that are to be another instance's
 sed -i 's,"auto","localhost:4304",' /etc/owsd/OWS.rio
 does 'it is sent elsewhere' systemctl restart owsd@OWS

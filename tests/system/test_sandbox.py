@@ -125,6 +125,19 @@ def test_a_drop_in_takes_away_no_more_than_it_says(scene):
         assert unit - joined(sandbox.UNIT, file) == TAKEN.get(file.name, set()), file
 
 
+# In which module of Debian's kernel a group of devices is; one that is built in needs none
+MODULES = {"char-i2c": {"i2c_dev"}, "char-gpiochip": set(), "char-tty?*": {"usbserial", "cdc_acm"},
+           "char-usb_device": set()}
+
+
+def test_the_drivers_of_allowed_devices_are_there_before_it_starts(scene):
+    del scene
+    allowed = {line.split()[0] for line in sandbox.settings("DeviceAllow")}
+    modules = {f"modprobe@{name}.service" for group in allowed for name in MODULES[group]}
+    for key in ("Wants", "After"):
+        assert modules <= set(" ".join(sandbox.settings(key)).split()), key
+
+
 def test_the_rules_hold(scene):
     """The filter is no empty one: what it forbids fails, and so does a foreign address."""
     tries = {"os.nice(1)": False, "os.chroot('/')": False, "os.sched_setscheduler(0, 1, os.sched_param(1))":
