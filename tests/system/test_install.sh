@@ -143,6 +143,15 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 		systemctl --root="$root" enable owsd 2>enabled || { cat enabled; exit 1; }
 		[ -L "$root/etc/systemd/system/owsd.service.wants/owsd@OWS.service" ]
 		systemctl --root="$root" disable owsd 2>/dev/null
+		# as owsctl enable and doctor do it: one instance alone starts with the machine
+		for unit in "$in"/systemd/system/owsd*@.service; do
+			unit=$(basename "$unit" @.service)
+			[ "$unit" != owsd-writer ] || continue # its socket starts it
+			systemctl --root="$root" enable "$unit@HOUSE" 2>enabled || { cat enabled; exit 1; }
+			find "$root/etc/systemd/system" -path "*/multi-user.target.wants/$unit@HOUSE.service" | grep -q . ||
+				{ echo "$unit@HOUSE does not start with the machine"; exit 1; }
+			systemctl --root="$root" disable "$unit@HOUSE" 2>/dev/null
+		done
 	fi
 	if command -v systemd-sysusers >/dev/null; then
 		systemd-sysusers --root="$root" --cat-config | grep -q '^u owsd '
