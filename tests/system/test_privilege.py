@@ -480,6 +480,24 @@ def test_owsd_has_no_right_and_gets_none(scene):
     assert facts["Uid"].split() == [str(private.OWSD)] * 4
 
 
+def test_the_kernels_files_of_a_slave_are_for_owsd_alone(scene):
+    """The command of the udev rule, on a folder as the kernel makes it."""
+    del scene
+    rules = (owsdtest.SOURCE / "board/udev/owsd.rules").read_text()
+    command = re.search(r"""^SUBSYSTEM=="w1".*RUN\+="/bin/sh -c '(.*)'"$""", rules, re.M).group(1)
+    slave = private.room() / "slave"
+    slave.mkdir(mode=0o755)
+    for name, mode in (("rw", 0o644), ("output", 0o664), ("alarms", 0o644), ("id", 0o444)):
+        (slave / name).touch()
+        (slave / name).chmod(mode)
+    subprocess.run(["sh", "-c", command.replace("/sys%p", str(slave)).replace("$$", "$")], check=True)
+    for user in private.USERS:
+        for name in ("rw", "output", "alarms", "id"):
+            done = subprocess.run([*private.as_user(user), "sh", "-c", f": >>{slave}/{name}"],
+                                  capture_output=True, check=False)
+            assert (done.returncode == 0) == (user == "owsd" and name != "id"), (user, name, done)
+
+
 def test_segments_that_no_group_gets_are_told(scene):
     """As a filter without these calls, or a user who is not in the group, would have it."""
     real = sandbox.calls
