@@ -259,6 +259,12 @@ for p in $packages; do
 	does "$p is installed again" dpkg -i next/"$p"_9.0_*.deb
 	takes "$p again" "$p"
 done
+does 'owsd alone is purged' dpkg -P owsd
+cp /etc/owsd/HOUSE.rio /etc/owsd/OWS.rio
+does 'and installed again' dpkg -i next/owsd_9.0_*.deb
+does 'all of it is enabled' enable_units owsd
+does 'the page answers at its socket' asks /run/owsd/OWS.web
+does 'the writer comes when somebody connects' writer_comes
 does 'all are removed' dpkg -r $packages
 gone 'all removed' $packages
 same 'all removed: nothing listens' '' "$(listening)"

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# What an installation of a package restarts and starts: each unit once
+# What an installation of a package restarts and starts: each unit once; what a purge takes away
 set -eu
 
 units=$PWD/units links=$PWD/etc/systemd/system
@@ -55,3 +55,14 @@ restarts 'an upgrade' owsd-modbus.service
 rm -r "$links"
 echo owsd-modbus@HAND.service >active
 restarts 'one that was started by hand' owsd-modbus@HAND.service
+
+# A purge of owsd leaves the sockets of owsd-web, which may stay
+sed "s,/run/owsd,$PWD/place,g; s,/var/lib/owsd,$PWD/kept,g; s,/etc/owsd,$PWD/own,g" \
+	"$OWSD_SOURCE/board/debian/owsd.postrm" >postrm
+mkdir place kept own
+touch place/OWS.image place/OWS.sock place/OWS.web place/OWS.config kept/OWS.last own/OWS.rio
+sh postrm purge
+[ "$(echo place/*)" = 'place/OWS.config place/OWS.web' ] && [ ! -e kept ] && [ ! -e own ]
+rm place/*
+sh postrm purge
+[ ! -e place ]
