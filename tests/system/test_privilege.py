@@ -346,6 +346,16 @@ def test_the_doctor_names_the_group_that_is_missing_and_two_owsd_of_one_name(sce
           lambda: scene._run(doctor, 30).stdout)
 
 
+def test_the_doctor_says_of_no_file_that_it_may_not_read_that_it_is_wrong(scene):
+    daemon = daemon_of(scene)
+    good(scene, daemon.name)
+    for mode in (0o640, 0o644):
+        os.chmod(daemon.config, mode)
+        said = ctl(scene, "reader", daemon.name, "doctor").stdout
+        told = f"note: this user may not read {daemon.config}\n    sudo owsctl -n {daemon.name} doctor\n"
+        assert (told in said) == (mode == 0o640) and "correct " not in said, said
+
+
 # Where the image is that a program has mapped
 PLACE = """
 import os

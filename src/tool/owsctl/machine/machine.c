@@ -81,9 +81,16 @@ static void take_message(void *ctx, bool is_error, const char *message)
 void check_configuration(struct doctor *d)
 {
 	struct told told = {.d = d, .report = {.line = take_message, .ctx = &told}};
+	int err = access(d->file, R_OK) ? errno : 0;
 
-	if (access(d->file, F_OK) && errno == ENOENT)
+	if (err == ENOENT)
 		return;
+	/* the file has no fault by that */
+	if (err == EACCES) {
+		report_add(&d->found, BOARD_NOTE, "this user may not read %s", d->file);
+		report_command(&d->found, "sudo owsctl -n %s doctor", d->instance);
+		return;
+	}
 	if (config_load(d->file, &told.report, &d->config) == 0)
 		config_check(d->config, &told.report);
 	d->errors = told.report.errors;
