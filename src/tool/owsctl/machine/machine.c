@@ -45,7 +45,8 @@ void check_disk(struct doctor *d)
 		if (sscanf(line, "%*s %*s %*s %llu %*s %63s", &room, at) != 2 || !strcmp(at, last))
 			continue;
 		snprintf(last, sizeof(last), "%s", at);
-		if (room >= ROOM_KB)
+		/* what cannot be written is full by nature, as a squashfs */
+		if (room >= ROOM_KB || (!*d->root && access(at, W_OK) && errno == EROFS))
 			continue;
 		report_add(&d->found, BOARD_MISSING, "%s is full: %llu kB are free", at, room);
 		report_command(&d->found, "make room on %s: sudo du -xah %s | sort -h | tail -20",
