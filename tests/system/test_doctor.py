@@ -267,11 +267,30 @@ def test_what_is_safe_is_run_by_fix_and_shown(scene):
     assert asked == ["timedatectl show", "systemd-tmpfiles --create", "timedatectl show"], asked
 
 
-def test_a_full_disk_is_the_first_line(scene):
+def df_says(scene, at):
     stand_ins(scene, "df", says="Filesystem 1024-blocks Used Available Capacity Mounted on\\n"
-                                "/dev/sda1 100000 99900 100 100% /var\\n".replace("%", "%%"))
+                                f"/dev/sda1 100000 99900 100 100%% {at}\\n")
+
+
+def test_a_full_disk_is_the_first_line(scene):
+    df_says(scene, "/var")
     daemon = house(scene, "at 0s short 0x18 for 10h")
     first_lines(scene, daemon, "make room on /var: ")
+
+
+def test_a_disk_that_cannot_be_written_is_not_full(scene):
+    if os.geteuid() != 0:
+        owsdtest.skip("only root may mount")
+    disk = scene.path / "disk"
+    disk.mkdir()
+    df_says(scene, disk)
+    daemon = house(scene, "")
+    scene.until(lambda: scene.get(daemon, "cellar") == "12.5", 30, "the temperature arrives")
+    for mode in ("ro", "rw"):
+        done = subprocess.run(["unshare", "-m", "sh", "-c", f'mount -t tmpfs -o {mode} tmpfs {disk} && exec "$@"',
+                               "sh", owsdtest.OWSCTL, "-n", daemon.name, "doctor"],
+                              capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
+        assert (f"make room on {disk}" in done.stdout) == (mode == "rw"), done
 
 
 def test_a_page_without_an_address_says_how_to_give_it_one(scene):
