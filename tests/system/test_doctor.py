@@ -267,6 +267,15 @@ def test_what_is_safe_is_run_by_fix_and_shown(scene):
     assert asked == ["timedatectl show", "systemd-tmpfiles --create", "timedatectl show"], asked
 
 
+def test_what_is_for_root_names_the_instance(scene):
+    daemon = house(scene, "")
+    # nobody is root in a user namespace without a map
+    prefix = [] if os.geteuid() else ["unshare", "-U"]
+    for words in (("enable", "mqtt"), ("disable", "web"), ("doctor", "--fix")):
+        done = scene._run([*prefix, owsdtest.OWSCTL, "-n", daemon.name, *words], owsdtest.PATIENCE)
+        assert done.returncode == 1 and f"sudo owsctl -n {daemon.name} {' '.join(words)}" in done.stderr, done
+
+
 def df_says(scene, at):
     stand_ins(scene, "df", says="Filesystem 1024-blocks Used Available Capacity Mounted on\\n"
                                 f"/dev/sda1 100000 99900 100 100%% {at}\\n")
@@ -298,6 +307,7 @@ def test_a_page_without_an_address_says_how_to_give_it_one(scene):
     said = scene.owsctl(daemon, "enable", "--dry-run", "web").stdout
     assert f"+ systemctl try-restart owsd-web@{daemon.name}.service" in said
     assert f"page: /run/owsd/{daemon.name}.web" in said and 'Listen "127.0.0.1:8080"' in said
+    assert f"and again: sudo owsctl -n {daemon.name} enable web" in said, said
 
 
 def test_a_program_without_signals_is_told_where_they_come_from(scene):

@@ -225,7 +225,7 @@ def test_a_signal_is_renamed_by_the_writer_and_keeps_what_it_is(scene):
         publish(house, f"owsd/pi7/{name}/rename", text)
         until(lambda: len(house.listener.all(f"owsd/pi7/{name}/result")) > count, 40, house.face.log)
         assert words in house.listener.last(f"owsd/pi7/{name}/result"), house.listener.last(f"owsd/pi7/{name}/result")
-    answers("room", "hall", "owsd-writer is not there: systemctl enable --now owsd-writer@OWS.socket")
+    answers("room", "hall", f"owsd-writer is not there: sudo owsctl -n {house.daemon.name} enable mqtt")
     writer = Writer(scene, house.daemon.config, house.daemon.name)
     house.arrives("room", lambda m: m["good"])
     chip = house.last(f"chip/{SENSOR}/problem")

@@ -202,16 +202,21 @@ static void on_answered(void *ctx)
 	errand_end(e, m->broker.face);
 }
 
+#define FAULT_TEXT 120
+
 /* Why it could not begin. */
-static const char *errand_fault(int err, enum errand_kind kind)
+static const char *errand_fault(const struct mqtt *m, int err, enum errand_kind kind,
+                                char text[FAULT_TEXT])
 {
 	if (err == -EBUSY)
 		return "another one is under way: try again";
 	if (err == -EACCES || err == -EPERM)
 		return "the user owsd-mqtt has to be in the group owsd-config";
-	if (kind == ERRAND_RENAME)
-		return "owsd-writer is not there: systemctl enable --now owsd-writer@OWS.socket";
-	return "owsd gave no list of what is on its wires";
+	if (kind == ERRAND_DEVICES)
+		return "owsd gave no list of what is on its wires";
+	snprintf(text, FAULT_TEXT, "owsd-writer is not there: sudo owsctl -n %s enable mqtt",
+	         m->commands.instance);
+	return text;
 }
 
 /* Each list costs owsd a directory of all devices, each rename a file and a reload. */
@@ -223,6 +228,7 @@ static void on_devices(struct mqtt *m, const struct broker_message *message)
 {
 	unsigned char request[DEVICES_REQUEST];
 	int len = devices_request(request), err;
+	char text[FAULT_TEXT];
 	struct ask ask;
 
 	ask_read(&ask, message->text, message->len, false);
@@ -233,7 +239,7 @@ static void on_devices(struct mqtt *m, const struct broker_message *message)
 	err = errand_begin(&m->errand, ERRAND_DEVICES, m->broker.face, "sock", request, (size_t)len,
 	                   TOPIC_CHIP, message);
 	if (err)
-		answer_devices(m, &ask, NULL, errand_fault(err, ERRAND_DEVICES), message);
+		answer_devices(m, &ask, NULL, errand_fault(m, err, ERRAND_DEVICES, text), message);
 }
 
 /* Another name for a signal: the identity stays, and what hangs on it. */
@@ -244,7 +250,7 @@ static void on_rename(struct mqtt *m, const char *name, const struct row *row,
 	struct ask ask;
 	const char *wrong = ask_read(&ask, message->text, message->len, false);
 	const char *why = commands_fault(message);
-	char order[ASK_MOST + 512];
+	char order[ASK_MOST + 512], text[FAULT_TEXT];
 	int len, err;
 
 	why = why ? why : wrong;
@@ -263,7 +269,7 @@ static void on_rename(struct mqtt *m, const char *name, const struct row *row,
 	if (!why) {
 		err = errand_begin(&m->errand, ERRAND_RENAME, m->broker.face, "config", order,
 		                   (size_t)len, name, message);
-		why = err ? errand_fault(err, ERRAND_RENAME) : NULL;
+		why = err ? errand_fault(m, err, ERRAND_RENAME, text) : NULL;
 	}
 	if (why)
 		answer_rename(m, &ask, name, why, message);

@@ -210,10 +210,10 @@ int verb_doctor(struct ctl *ctl, int argc, char **argv)
 		return ctl_usage(ctl, "doctor takes no operands");
 	if (fixes && *d.root)
 		return ctl_usage(ctl, "--fix is for this machine, and --root names another");
-	if (fixes && geteuid() != 0)
-		return ctl_fail("--fix is for root: sudo owsctl doctor --fix");
 	if (!segment_name_ok(ctl->instance))
 		return ctl_fail("%s cannot be the name of an instance", ctl_word(ctl->instance));
+	if (fixes && geteuid() != 0)
+		return ctl_fail("--fix is for root: sudo owsctl -n %s doctor --fix", ctl->instance);
 	d.instance = ctl->instance;
 	doctor_look(&d);
 	if (fixes) {

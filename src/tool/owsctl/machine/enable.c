@@ -129,8 +129,8 @@ static void say_where(const struct change *change)
 	printf("page: %s%s/run/owsd/%s.web\n", addresses, *addresses ? " " : "", instance);
 	if (!*addresses)
 		printf("      for a browser without a proxy: Web { Listen \"127.0.0.1:8080\" } in %s, "
-		       "and again: sudo owsctl enable web\n",
-		       change->config->file);
+		       "and again: sudo owsctl -n %s enable web\n",
+		       change->config->file, instance);
 }
 
 static int no_face(const struct ctl *ctl, const char *word, const struct face_row *rows, int count)
@@ -165,8 +165,8 @@ static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
 	face_unit(change.row, ctl->instance, "socket", change.socket);
 	face_unit(change.row, ctl->instance, "service", change.service);
 	if (!change.dry && geteuid() != 0)
-		return ctl_fail("that is for root: sudo owsctl %s %s", ctl->verb->name,
-		                argv[optind]);
+		return ctl_fail("that is for root: sudo owsctl -n %s %s %s", ctl->instance,
+		                ctl->verb->name, argv[optind]);
 	if (!change.dry && !face_is_installed("", change.row))
 		return ctl_fail("%s is not installed: sudo apt install %s", change.row->program,
 		                change.row->package);
