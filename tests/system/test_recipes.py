@@ -121,6 +121,13 @@ def test_a_face_that_is_new_is_in_all_recipes(scene):
     assert "$(BR2_PACKAGE_OWSD_NOTIFY)$(BR2_PACKAGE_OWSD_LINES)" in (out / "buildroot/package/owsd/owsd.mk").read_text()
 
 
+def test_the_files_of_a_program_have_the_mode_of_its_unit_on_alpine_too(scene):
+    for program in ("owsd", *(row[0] for row in FACES if row[0] != "owsd-writer")):
+        unit = re.search(r"^UMask=0(.*)$", (BOARD / f"systemd/{program}@.service").read_text(), re.M)[1]
+        given = run("sh", "-c", f". {BOARD}/alpine/owsd.initd && echo $umask", cwd=scene.path, RC_SVCNAME=f"{program}.HOUSE")
+        assert given == f"{unit}\n", (program, given)
+
+
 def test_a_tarball_of_another_version_is_refused(scene):
     (scene.path / "owsd-0.0.1.tar.xz").write_bytes(b"")
     said = run(sys.executable, BOARD / "make-recipes", "owsd-0.0.1.tar.xz", cwd=scene.path, wrong=True)
