@@ -150,6 +150,25 @@ def test_a_broken_configuration_replaces_nothing(scene):
         machine.close()
 
 
+def test_a_reload_that_was_refused_fails_in_each_run_until_it_is_taken(scene):
+    machine = Machine(scene)
+    try:
+        variables = dict(owsd_rio=machine.rio("room"))
+        assert machine.run(**variables)[0] == 0
+        template = pathlib.Path(variables["owsd_rio"])
+        # a file without an error, which takes a restart
+        template.write_text(template.read_text().replace("  ItemCount", f'  Listen "{owsdtest.free_port()}"\n  ItemCount'))
+        for _ in range(2):
+            status, text, _ = machine.run(**variables)
+            assert status != 0 and "Listen" in text, text
+        machine.daemon.stop()
+        machine.daemon = scene.owsd(machine.file, name=machine.name)
+        status, text, changed = machine.run(**variables)
+        assert (status, changed) == (0, 0), text
+    finally:
+        machine.close()
+
+
 def test_the_role_names_packages_and_units_that_there_are(_scene):
     packages = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
     defaults = (FLEET / "ansible/roles/owsd/defaults/main.yml").read_text()
