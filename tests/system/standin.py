@@ -64,7 +64,7 @@ LOOKED_AT = {
     "g++": [r"-shared -fPIC -O2 -DOPENPLC_V4 -I openplc-runtime/core/src/drivers -o libowsd\.so owsd\.cpp -lows"],
     "skopeo": [r"copy oci:build/oci:VERSION-amd64 docker-daemon:localhost/owsd:latest"],
     "podman": [r"pull oci:build/oci:VERSION-arm64"],
-    "docker": ["compose up -d", "compose restart owsd", "compose exec owsd owsctl -t auto scan --rio"],
+    "docker": ["compose up -d", "compose restart owsd", "compose exec owsd owsctl scan --rio"],
     "getent": ["group i2c", "group owsd owsd-control"],
     "halrun": [r"-I owsd\.hal"],
     "rpi-image-gen": [r"build -S /path/to/owsd/board/image/rpi-image-gen -c owsd\.yaml"],

@@ -10,7 +10,10 @@ import contextlib
 import json
 import os
 import pathlib
+import re
+import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import urllib.request
@@ -158,11 +161,14 @@ class Container:
     def names(self):
         return [name for _, name in self.processes()]
 
-    def owsctl(self, *words):
+    def shell(self, text):
         pid = self.processes()[0][0]
         return subprocess.run(["nsenter", "-t", str(pid), "-m", "-p", "chroot", "--userspec=4304:4304", self.root,
-                               "/usr/bin/owsctl", *words], capture_output=True, text=True, timeout=60, check=False,
+                               "/usr/bin/sh", "-c", text], capture_output=True, text=True, timeout=60, check=False,
                               env={"OWS_DIR": "/run/owsd", "PATH": "/usr/sbin:/usr/bin"})
+
+    def owsctl(self, *words):
+        return self.shell(shlex.join(["owsctl", *words]))
 
 
 def house(port, more=""):
@@ -181,6 +187,21 @@ def test_without_faces_the_container_is_owsd_alone_with_good_values(scene):
     assert container.owsctl("stats").returncode == 0
     os.kill(container.processes()[0][0], 15)
     assert container.program.process.wait(30) == 0, container.program.log()
+
+
+def test_what_the_compose_file_and_its_page_run_in_the_container_does_its_work(scene):
+    healthy = re.search(r"^ +test: \[CMD-SHELL, "(.*)"\]$", (SOURCE / "board/oci/compose.yaml").read_text(), re.M)[1]
+    scan = re.search(r"^docker compose exec owsd (.*)$", (SOURCE / "docs/distributions.md").read_text(), re.M)[1]
+    assert scan in (SOURCE / "board/oci/owsd/OWS.rio").read_text()
+    container = Container(scene, "", house(server(scene).port))
+    until(lambda: container.processes() and container.owsctl("get", "room").returncode == 0, 60, container.program.log)
+    done = container.shell(scan)
+    assert done.returncode == 0 and "Item {" in done.stdout and "10.67C6697351FF" in done.stdout, done
+    assert container.shell(healthy).returncode == 0
+    owsd, = [pid for pid, name in container.processes() if name == "owsd"]
+    for number, wanted in ((signal.SIGSTOP, False), (signal.SIGCONT, True)):
+        os.kill(owsd, number)
+        until(lambda: (container.shell(healthy).returncode == 0) == wanted, 60, container.program.log)
 
 
 def test_the_faces_that_are_asked_for_run_beside_owsd_and_one_that_dies_comes_back(scene):
