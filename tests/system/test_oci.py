@@ -190,7 +190,7 @@ def test_without_faces_the_container_is_owsd_alone_with_good_values(scene):
 
 
 def test_what_the_compose_file_and_its_page_run_in_the_container_does_its_work(scene):
-    healthy = re.search(r"^ +test: \[CMD-SHELL, "(.*)"\]$", (SOURCE / "board/oci/compose.yaml").read_text(), re.M)[1]
+    healthy = re.search(r'^ +test: \[CMD-SHELL, "(.*)"\]$', (SOURCE / "board/oci/compose.yaml").read_text(), re.M)[1]
     scan = re.search(r"^docker compose exec owsd (.*)$", (SOURCE / "docs/distributions.md").read_text(), re.M)[1]
     assert scan in (SOURCE / "board/oci/owsd/OWS.rio").read_text()
     container = Container(scene, "", house(server(scene).port))
