@@ -140,7 +140,7 @@ class House:
         for name in ("c", "config", "data"):
             (scene.path / name).mkdir()
         self.file = scene.path / "config/OWS.rio"
-        if file:
+        if file is not None:
             self.file.write_text(file)
         self.install(scene.path / "installed")
         self.start()
@@ -373,7 +373,7 @@ def test_what_dies_is_started_again_and_nothing_else(scene):
 
 def test_what_a_program_plants_in_its_folders_gives_it_nothing(scene):
     """Root starts all of them, and meets what the user owsd, or a guest of Samba, has left."""
-    house = House(scene, broker=False)
+    house = House(scene, broker=False, file="")  # as a power cut in the first start leaves it
     found(house)
     assert house.addon.stop(60) == 0
     house.file.unlink()
