@@ -310,6 +310,13 @@ def test_a_page_without_an_address_says_how_to_give_it_one(scene):
     assert f"and again: sudo owsctl -n {daemon.name} enable web" in said, said
 
 
+def test_a_block_is_asked_for_of_a_program_that_can_have_one(scene):
+    daemon = house(scene, "")
+    for program, told in (("mqtt", True), ("writer", False)):
+        done = scene.owsctl(daemon, "enable", "--dry-run", program)
+        assert done.returncode == 0 and ("has no block for" in done.stdout) == told, done
+
+
 def test_a_program_without_signals_is_told_where_they_come_from(scene):
     plant = scene.file("plant.sim", BUSES + CHIPS)
     for items, told in (([], True), ([LIVING], False)):

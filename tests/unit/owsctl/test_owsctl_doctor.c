@@ -442,6 +442,8 @@ static void test_a_face_has_what_its_block_asks_for(void)
 	TEST_ASSERT_TRUE(face_has_block(config, "owsd-mqtt"));
 	TEST_ASSERT_FALSE(face_has_block(config, "owsd-influx"));
 	TEST_ASSERT_FALSE(face_has_block(config, "owsd-writer"));
+	TEST_ASSERT_TRUE(face_may("owsd-influx", NULL));
+	TEST_ASSERT_FALSE(face_may("owsd-writer", NULL));
 	TEST_ASSERT_TRUE(face_has(config, "owsd-web", "Write"));
 	TEST_ASSERT_FALSE(face_has(config, "owsd-web", "Configure"));
 	TEST_ASSERT_FALSE(face_has(config, "owsd-mqtt", "Write"));

@@ -120,7 +120,7 @@ static void say_where(const struct change *change)
 	if (!change->config->item_count)
 		printf("%s has no signals, so there is nothing to show: owsctl doctor\n",
 		       change->config->file);
-	if (!face_has_block(change->config, program))
+	if (face_may(program, NULL) && !face_has_block(change->config, program))
 		printf("%s has no block for %s: %s(8) says what it may have\n",
 		       change->config->file, program, program);
 	if (strcmp(program, "owsd-web") != 0)

@@ -95,7 +95,7 @@ bool face_may(const char *program, const char *key)
 {
 	const struct option_def *block = block_of(program);
 
-	return block && option_find(block->inside, key) >= 0;
+	return block && (!key || option_find(block->inside, key) >= 0);
 }
 
 bool face_has(const struct config *config, const char *program, const char *key)

@@ -30,7 +30,7 @@ int faces_table(struct face_row rows[FACE_ROWS]);
 const struct face_row *faces_find(const struct face_row *rows, int count, const char *word);
 /* Has the configuration the block of the program? */
 bool face_has_block(const struct config *config, const char *program);
-/* Can that block have the key? */
+/* Can that block have the key? NULL: can there be a block? */
 bool face_may(const char *program, const char *key);
 /* Has it the key, and if it is a flag, is it on? */
 bool face_has(const struct config *config, const char *program, const char *key);
