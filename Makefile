@@ -744,7 +744,9 @@ install-service:
 	install -m 644 board/udev/owsd.rules $(SERVICE_IN)/udev/rules.d/60-owsd.rules
 	[ -e $(D)/etc/owsd/OWS.rio ] || install -m 644 board/debian/OWS.rio $(D)/etc/owsd/OWS.rio
 	@echo 'now: systemd-sysusers; systemd-tmpfiles --create; modprobe i2c-dev; udevadm trigger;'
-	@echo '     systemctl daemon-reload; systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+	@echo '     udevadm trigger --action=add --subsystem-match=w1; systemctl daemon-reload;'
+	@echo '     systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
+	@echo "     and after an upgrade: systemctl try-restart 'owsd*'"
 	@echo '     and for the page: owsctl enable web; likewise history, mqtt, influx, notify. owsctl doctor says what is wrong'
 
 uninstall-service:

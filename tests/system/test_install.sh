@@ -137,6 +137,11 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 		modules-load.d/owsd.conf udev/rules.d/60-owsd.rules; do
 		[ -s "$in/$f" ] || { echo "PREFIX=$prefix: missing: $in/$f"; exit 1; }
 	done
+	# what runs, and devices that are there, know nothing of the new files by themselves
+	for command in 'udevadm trigger --action=add --subsystem-match=w1' 'systemctl enable --now owsd ' \
+		"systemctl try-restart 'owsd\*'"; do
+		grep -q -- "$command" said || { cat said; exit 1; }
+	done
 	grep -qx "ExecStart=${prefix%/}/sbin/owsd -n %i \$OWSD_OPTIONS" "$in/systemd/system/owsd@.service"
 	# the genuine one finds them, and enables the instance that the unit names
 	if command -v systemctl >/dev/null; then
