@@ -92,7 +92,7 @@ def recipes(scene, board=BOARD, content=b"a tarball"):
 def test_the_recipes_are_of_one_version_and_have_each_face(scene):
     out = recipes(scene)
     files = {file.name: file.read_text() for file in out.rglob("*") if file.is_file()}
-    assert set(files) == {"APKBUILD", "owsd.pre-install", "Config.in", "owsd.mk", "owsd.hash", "S60owsd",
+    assert set(files) == {"APKBUILD", "owsd.pre-install", "owsd.pre-upgrade", "Config.in", "owsd.mk", "owsd.hash", "S60owsd",
                           f"owsd_{VERSION}.bb"}, files.keys()
     assert f"\npkgver={VERSION}\n" in files["APKBUILD"] and f"\nOWSD_VERSION = {VERSION}\n" in files["owsd.mk"]
     for name, kind in (("APKBUILD", "sha512"), ("owsd.hash", "sha256"), (f"owsd_{VERSION}.bb", "sha256")):
@@ -104,6 +104,9 @@ def test_the_recipes_are_of_one_version_and_have_each_face(scene):
                            ("owsd.mk", f"$(if $({option}),{program})"), ("owsd.mk", f"- {groups.replace(' ', ',')} {user}\n"),
                            (f"owsd_{VERSION}.bb", f"${{sbindir}}/{program} "), (f"owsd_{VERSION}.bb", f'RDEPENDS:{package} = ')):
             assert text in files[name], f"{name} has no {text}"
+    assert files["owsd.pre-upgrade"] == files["owsd.pre-install"]
+    for script in re.search(r'^install="(.*)"$', files["APKBUILD"], re.M)[1].replace("$pkgname", "owsd").split():
+        assert script in files, script
     for name, text in files.items():
         assert not re.search(r"@[A-Za-z]\w*@", text), f"{name} has a name of the template"
 
