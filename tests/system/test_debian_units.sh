@@ -48,6 +48,8 @@ restarts 'nothing that is enabled or runs'
 enabled multi-user.target owsd-modbus.service
 enabled owsd-modbus.service owsd-modbus@OWS.service
 restarts 'a first installation' owsd-modbus.service
+enabled multi-user.target owsd-modbus@OWS.service
+restarts 'one with two links' owsd-modbus.service
 enabled multi-user.target owsd-modbus@OLD.service
 restarts 'one that is enabled elsewhere' owsd-modbus.service owsd-modbus@OLD.service
 printf '%s\n' owsd-modbus.service owsd-modbus@OWS.service owsd-modbus@OLD.service owsd-modbus@HAND.service >active
