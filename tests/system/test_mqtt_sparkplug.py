@@ -179,6 +179,25 @@ def test_the_births_have_all_that_is_there_and_data_has_aliases_alone(scene):
     assert not house.kept() and not [t for _, t, _ in house.listener.all() if not t.startswith("spBv1.0/plant/")]
 
 
+def test_at_a_common_start_all_devices_are_born_before_data_flows(scene):
+    """A thermometer is read for the first time when a relay has been set many times."""
+    house, host = start(scene, ROOM, RELAY)
+    host.hears("dbirth", SENSOR)
+    house.face.stop()
+    house.daemon.stop()
+    begun = len(host.look())
+    house.daemon = scene.owsd(house.text(ROOM, RELAY), name=house.daemon.name)
+    house.face = house.start()
+    born = ("dbirth", SENSOR)
+    for i in range(400):
+        house.set("relay", str(i % 2))
+        if born in [h[:2] for h in host.look()[begun:]]:
+            break
+    heard = [h[:2] for h in host.look()[begun:]]
+    assert ("dbirth", SWITCH) in heard and ("nbirth", None) in heard, heard
+    assert not [h for h in heard[:heard.index(born)] if h[0].endswith("data")], heard
+
+
 def test_a_limit_alarm_is_a_metric_beside_its_signal(scene):
     house, host = start(scene, {**ROOM, "LimitH": 20}, RELAY, **ON)
     at, born = host.hears("dbirth", SENSOR)

@@ -27,6 +27,8 @@
 #define REBIRTH_NS NS_PER_S
 /* Nothing is published for so long, and something waits: the log says what it waits for */
 #define STUCK_NS (5 * NS_PER_S)
+/* So long after its start owsd may be looking at a device for the first time */
+#define FIRST_LOOK_NS (5 * NS_PER_S)
 /* So long the host of a session may be away until it is looked for at another broker */
 #define HOST_WAIT_NS (60 * NS_PER_S)
 
@@ -192,6 +194,24 @@ static bool publish_health(struct mqtt *m, int64_t now_ns)
  * Publish what waits. Returns what it waits for, NULL: nothing. Between two images no row can be
  * looked at.
  */
+/*
+ * The births of a session have all devices that are there, and go before any data. owsd may have
+ * started with us, and not know yet which are there.
+ */
+static bool awaits_looks(const struct face *face, const struct stream *s, int64_t now_ns)
+{
+	struct ows_value value;
+
+	if (!face->live || !s->profile->session || s->announced ||
+	    now_ns - face->start_ns >= FIRST_LOOK_NS)
+		return false;
+	for (int i = 0; i < s->count; i++)
+		if (!s->rows[i].info.output && !ows_get_signal(s->h, i, now_ns, &value) &&
+		    value.quality == OWS_Q_INITIAL && !value.err)
+			return true;
+	return false;
+}
+
 static const char *pump(struct face *face, int64_t now_ns)
 {
 	struct mqtt *m = mqtt_own(face);
@@ -213,6 +233,8 @@ static const char *pump(struct face *face, int64_t now_ns)
 	/* who asks for a birth gets nothing else before, but that owsd is lost */
 	if (m->asked && session && face->live)
 		return "the pause between two births";
+	if (awaits_looks(face, &m->stream, now_ns))
+		return NULL;
 	m->stream.settled = broker_is_settled(&m->broker, now_ns);
 	if (!stream_pump(&m->stream))
 		return m->stream.host && !m->stream.host_there ? NULL : "the broker to take it";
@@ -351,6 +373,8 @@ static void go_on(struct face *face, int64_t now_ns)
 		face->tick_ns = m->errand.until_ns;
 	if (m->asked && announce_ns(m) > now_ns && announce_ns(m) < face->tick_ns)
 		face->tick_ns = announce_ns(m);
+	if (now_ns < face->start_ns + FIRST_LOOK_NS && !m->stream.announced)
+		face->tick_ns = earlier_ns(face->tick_ns, face->start_ns + FIRST_LOOK_NS);
 	/* the next tick may be minutes away; to show each count at once would cost too much */
 	if (m->broker.state != m->shown)
 		show_status(face);
