@@ -214,25 +214,6 @@ static void test_numbers_at_the_ends_of_their_range_are_times_that_can_be_reckon
 		}
 }
 
-/* What was read of the signals until then is freed, as the address sanitizer looks. */
-static void test_a_list_of_signals_that_breaks_off_leaves_none(void)
-{
-	struct ows_history *h;
-
-	TEST_ASSERT_EQUAL_INT(0, ows_history_open(NULL, past.directory, &h));
-	TEST_ASSERT_GREATER_THAN_INT(1, ows_history_signals(h));
-	sql("alter table signal rename to sound;"
-	    "create view signal as select signal, name, identity, former, type, output, decimals,"
-	    " case when signal = (select max(signal) from sound)"
-	    " then abs(-9223372036854775807 - 1) else unit end as unit from sound");
-	TEST_ASSERT_LESS_THAN_INT(0, ows_history_refresh(h));
-	TEST_ASSERT_EQUAL_INT(0, ows_history_signals(h));
-	sql("drop view signal; alter table sound rename to signal");
-	TEST_ASSERT_EQUAL_INT(0, ows_history_refresh(h));
-	TEST_ASSERT_GREATER_THAN_INT(1, ows_history_signals(h));
-	ows_history_close(h);
-}
-
 static void test_what_is_no_file_is_not_waited_for(void)
 {
 	static const char *const names[] = {"-journal", "-wal", "-shm", ""};
@@ -299,7 +280,6 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_numbers_at_the_ends_of_their_range_are_times_that_can_be_reckoned_with);
-	RUN_TEST(test_a_list_of_signals_that_breaks_off_leaves_none);
 	RUN_TEST(test_what_is_no_file_is_not_waited_for);
 	RUN_TEST(test_what_is_no_table_is_not_read);
 	RUN_TEST(test_a_file_that_takes_for_ever_is_given_up);
