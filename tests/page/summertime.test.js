@@ -28,7 +28,8 @@ test("the seven days stay the same ones all day, also in the week after a change
 	const asked = [];
 	journal.build(document.body);
 	const day = document.body.find((one) => one.getAttribute("id") === "day");
-	for (const [now, first] of [["2026-10-28T22:30Z", "2026-10-21T22:00Z"], ["2026-03-31T22:30Z", "2026-03-25T23:00Z"],
+	for (const [now, first] of [["2026-10-28T22:30Z", "2026-10-21T22:00Z"],
+		["2026-03-31T22:30Z", "2026-03-25T23:00Z"],
 		["2026-10-25T12:00Z", "2026-10-18T22:00Z"], ["2026-07-01T12:00Z", "2026-06-24T22:00Z"]]) {
 		clock.wall = Date.parse(now) - clock.now;
 		await journal.look();

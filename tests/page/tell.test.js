@@ -25,8 +25,9 @@ test("an alarm that returns is no news, one that is raised again is", () => {
 });
 
 test("a hidden page has the same words for what waits as one that is seen", () => {
-	const standing = [["a", "! device; ! high, returned", ["device", "high"]], ["b", "! cannot be armed", ["device"]],
-		["c", "low, acknowledged", ["low"]], ["d", "! high high", ["high high"]], ["e", null, ["not as commanded"]]];
+	const standing = [["a", "! device; ! high, returned", ["device", "high"]],
+		["b", "! cannot be armed", ["device"]], ["c", "low, acknowledged", ["low"]],
+		["d", "! high high", ["high high"]], ["e", null, ["not as commanded"]]];
 	const seen = waiting(standing.map(([name, alarm]) => ({name, alarm})));
 	const hidden = waitingOf(standing.flatMap(([name, words, kinds]) =>
 		kinds.map((alarm) => ({name, alarm, words, state: "stands"}))));

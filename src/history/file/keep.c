@@ -109,6 +109,7 @@ int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *direct
 	if (!err && minutes > 0)
 		err = delete_gaps(db, minutes);
 	if (!err && hours > 0)
-		err = delete_before(db, "hour", "id", schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
+		err = delete_before(db, "hour", "id",
+		                    schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
 	return err;
 }

@@ -45,8 +45,8 @@ static inline struct ows_command_slot *give_slot(const struct give *give, uint32
 }
 
 /*
- * The stamp of the record's last confirmed command; 0: none. One that seems newer than the last set
- * is older than that by 2^31 sets: it must reach no stamp of the record that a program may wait for.
+ * The stamp of the record's last confirmed command; 0: none. One that seems newer than the last
+ * set is older than that by 2^31 sets: it must reach no stamp that a program may wait for.
  */
 static inline uint32_t give_applied(const struct give *give, uint32_t record)
 {

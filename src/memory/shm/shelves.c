@@ -61,7 +61,7 @@ static const struct ows_info_entry *earlier_info(const struct earlier *from, uin
 static const char *earlier_text(const struct earlier *from, uint32_t off)
 {
 	return off < from->pool.off || off - from->pool.off >= from->pool.count ? ""
-	                                                                       : from->base + off;
+	                                                                        : from->base + off;
 }
 
 static const char *earlier_identity(const struct earlier *from, const struct ows_info_entry *info)

@@ -115,8 +115,8 @@ static void test_each_type_has_its_form_and_its_function(void)
 
 static void test_a_name_is_one_text_of_the_file(void)
 {
-	TEST_ASSERT_EQUAL(CTL_DONE, converted(LISTEN, ITEM("C:\\\\", "/29.A0B1C2000004/PIO.0", "bool",
-	                                                   "input")));
+	TEST_ASSERT_EQUAL(CTL_DONE, converted(LISTEN, ITEM("C:\\\\", "/29.A0B1C2000004/PIO.0",
+	                                                   "bool", "input")));
 	holds(out, PRINTED("C:\\\\", "1", "0x00000200", "1"));
 }
 
