@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {pass, settle} from "./browser.js";
-import {alone, later} from "./page/dom.js";
+import {alone} from "./page/alone.js";
+import {later} from "./page/dom.js";
 
 test("a call that takes longer than its interval comes to its end before the next begins", async () => {
 	const log = [], again = alone(async () => {

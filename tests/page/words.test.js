@@ -3,8 +3,9 @@
 import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {test} from "node:test";
-import {UNKNOWN, alarmOf, clock, dateAndClock, dayText, kindOf, meaningOf, moment, msOf, qualityWords,
-	remedyOf, span, stateOf, tickText, valueText, withUnit} from "./page/words.js";
+import {dayText, moment, tickText} from "./page/when.js";
+import {UNKNOWN, alarmOf, clock, dateAndClock, kindOf, meaningOf, msOf,
+	qualityWords, remedyOf, span, stateOf, valueText, withUnit} from "./page/words.js";
 
 const source = (path) => readFileSync(`${process.env.PAGE_SOURCE}/${path}`, "utf8");
 

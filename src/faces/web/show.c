@@ -184,8 +184,6 @@ void show_signal(struct json *json, const struct show *show, int signal)
 	put_text(json, "alarm", show_alarm(show, signal, words));
 	if (show_commanded(show, signal, &look))
 		put_number(json, "commanded", &look);
-	else
-		json_null(json, "commanded");
 	json_object_end(json);
 }
 

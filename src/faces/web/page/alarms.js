@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The view Alarms: what waits first, then what was acknowledged or shelved, then what happened.
+import {alone} from "./alone.js";
 import {failed, get, post} from "./api.js";
 import {AlarmCard, keyOf} from "./card.js";
 import {ask} from "./command.js";
-import {alone, announce, el, later, put} from "./dom.js";
+import {announce, el, later, put} from "./dom.js";
 import * as journal from "./journal.js";
 import {store} from "./store.js";
 import * as tell from "./tell.js";
-import {alarmOf, moment, msOf} from "./words.js";
+import {moment} from "./when.js";
+import {alarmOf, msOf} from "./words.js";
 
 const SPANS = [[900, "15 minutes"], [3600, "1 hour"], [28800, "8 hours"], [86400, "1 day"],
 	[604800, "7 days"]];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The axes of plots: where their marks are, what stands at them, and how plots share a height.
-import {tickText} from "./words.js";
+import {tickText} from "./when.js";
 
 const SECONDS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800, 21600,
 	43200];

@@ -5,7 +5,8 @@ import {action, el, put, svg} from "./dom.js";
 import {actorOf, curveOf, isLost, limitOf, overWords} from "./happened.js";
 import {continued, emptyPast, pastOf} from "./series.js";
 import {store} from "./store.js";
-import {alarmOf, moment, msOf, qualityWords, span, valueText} from "./words.js";
+import {moment} from "./when.js";
+import {alarmOf, msOf, qualityWords, span, valueText} from "./words.js";
 
 const WIDTH = 180, HEIGHT = 44, HOUR_MS = 3600000, POINTS = 90;
 const AGAIN_MS = 60000; // until the past is fetched anew

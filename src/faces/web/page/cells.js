@@ -7,6 +7,9 @@ const order = new Intl.Collator("en", {numeric: true, sensitivity: "base"}).comp
 
 export const identityOf = ({path, keys}) => keys?.Identity ?? path;
 
+/** Is a flag on? */
+export const isOn = (text) => /^(on|yes|true|1)$/i.test(text);
+
 /** The columns, with one more key of the user's choice: [{key, title}]. */
 export const columns = (also, grouped) => [["Name"], ["Path"], ["Type"], ["IO", "I/O"],
 	[NOW, "Now"], ["Unit"], ...also ? [[also]] : [], ...grouped && also !== "Group" ? [["Group"]] : []]

@@ -141,8 +141,9 @@ function presentWords(shown) {
 }
 
 async function askOf(signal, title, accept, nodes, ready) {
-	const present = el("p", {}, presentWords(signal)), events = ["signals", "values", "trust"];
+	const present = el("p"), events = ["signals", "values", "trust"];
 	const paint = () => put(present, presentWords(signal));
+	paint();
 	events.forEach((type) => store.addEventListener(type, paint));
 	const yes = await ask(title, accept,
 		[el("p", {}, signal.description || `Path ${signal.path}`), present, ...nodes], ready);
@@ -150,7 +151,7 @@ async function askOf(signal, title, accept, nodes, ready) {
 	return yes;
 }
 
-/** Resolves to true; where the configuration wants it, only after the user has confirmed. */
+/** True, where the configuration wants it after the user has confirmed. */
 function confirmed(signal, value) {
 	if (!signal.confirm)
 		return true;

@@ -102,21 +102,6 @@ export function announce(text) {
 	requestAnimationFrame(() => { region.textContent = text; });
 }
 
-/** A call that is left out while the one before goes on. */
-export function alone(call) {
-	let running = false;
-	return async () => {
-		if (running)
-			return;
-		running = true;
-		try {
-			await call();
-		} finally {
-			running = false;
-		}
-	};
-}
-
 /** A call that happens once, so many ms after the first wish for it. */
 export function later(call, ms) {
 	let timer = 0;

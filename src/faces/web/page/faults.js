@@ -2,7 +2,8 @@
 // Cards of what is wrong, for the view Wire: what and where, since when, what it means, what to do.
 import {el} from "./dom.js";
 import {store} from "./store.js";
-import {SHAPES, moment, span} from "./words.js";
+import {moment} from "./when.js";
+import {SHAPES, span} from "./words.js";
 
 const NAMED = 12; // signals of a fault that are named
 const CARDS = 12;

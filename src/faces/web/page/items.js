@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The items of the draft: the grid of all, what is done with the chosen ones, the form of one.
+import {isOn} from "./cells.js";
 import {action, announce, el, later, put} from "./dom.js";
 import {draft} from "./draft.js";
 import {FIRST, Form, MORE, OUTPUT, setter} from "./form.js";
@@ -8,7 +9,7 @@ import {problemsOf} from "./problems.js";
 import {Special} from "./special.js";
 import * as several from "./several.js";
 import {store} from "./store.js";
-import {isOn, plural, qualityWords, valueText, withUnit, wordsOf} from "./words.js";
+import {plural, qualityWords, valueText, withUnit, wordsOf} from "./words.js";
 
 const state = {query: "", group: null, selected: null, at: -1, of: 0}; // selected: at of so many
 let search, groups, count, grid, view, editor, empty, form = null, head, place, value, double, also;

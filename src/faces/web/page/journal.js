@@ -5,9 +5,8 @@ import {badge} from "./badge.js";
 import {button, el, put, table} from "./dom.js";
 import {happenings, hourOf, hoursOf, isLost, joined, matches} from "./happened.js";
 import {store} from "./store.js";
-import {daysLater, midnight} from "./when.js";
-import {alarmOf, clock, dateAndClock, dayText, moment, msOf, span, valueText, withUnit,
-	wordsOf} from "./words.js";
+import {daysLater, dayText, midnight, moment} from "./when.js";
+import {alarmOf, clock, dateAndClock, msOf, span, valueText, withUnit, wordsOf} from "./words.js";
 
 const DAYS = 7, ENTRIES = 1000, PAGE = 50;
 const KINDS = [["", "All"], ["alarms", "Alarms"], ["commands", "Commands"]];

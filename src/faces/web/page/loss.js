@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a save would take away: signals, and the editing by this page.
-import {identityOf} from "./cells.js";
+import {identityOf, isOn} from "./cells.js";
 import {draft} from "./draft.js";
-import {isOn, listOf} from "./words.js";
+import {listOf} from "./words.js";
 
 const NAMED = 20;
 const DOORS = ["Listen", "Hosts", "Proxy"]; // keys of Web that say how the page is reached

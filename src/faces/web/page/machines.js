@@ -8,7 +8,8 @@ import {waiting} from "./head.js";
 import {lookOf} from "./look.js";
 import {store} from "./store.js";
 import {redraw} from "./strip.js";
-import {SHAPES, alarmOf, moment, span} from "./words.js";
+import {moment} from "./when.js";
+import {SHAPES, alarmOf, span} from "./words.js";
 
 const EVERY_MS = 10000;
 const AGED_S = 15; // an answer that is older has its age beside it

@@ -114,7 +114,6 @@ const PLAIN = {
 	bool: ({signal}) => signal.type === "bool",
 };
 
-/** Does a row pass what was chosen? */
 export function passes(row, {only, unit, group, from, to}) {
 	const v = Number(row.value);
 	return (!only || !PLAIN[only] || PLAIN[only](row)) && (!unit || row.signal.unit === unit)
@@ -173,11 +172,9 @@ export function writeAddress(state) {
 	return `#live${text ? `?${text}` : ""}`;
 }
 
-/** A list with a name put in, or taken out. */
 export const toggled = (names, name) =>
 	names.includes(name) ? names.filter((one) => one !== name) : [...names, name];
 
-/** A list with a name moved by so many places. */
 export function moved(names, name, by) {
 	const from = names.indexOf(name), to = Math.min(names.length - 1, Math.max(0, from + by));
 	const out = names.filter((one) => one !== name);

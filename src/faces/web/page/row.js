@@ -200,7 +200,6 @@ export class Row extends Parts {
 		this.since.classList.toggle("sim", this.since.textContent === "sim");
 	}
 
-	/** Does the row have all these words somewhere? */
 	matches(words) {
 		const s = this.signal, {look} = this;
 		const text = `${s.name} ${s.description ?? ""} ${s.path ?? ""} ${s.device ?? ""} `

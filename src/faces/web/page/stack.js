@@ -6,7 +6,7 @@ import * as paint from "./paint.js";
 import {Plot} from "./plot.js";
 import {shares, timeTicks} from "./axes.js";
 import {store} from "./store.js";
-import {moment} from "./words.js";
+import {moment} from "./when.js";
 
 const LEAST = 320, PHONE = 290, OTHER = 96, BETWEEN = 8, UNIT = 20, LINE = 10;
 const FIGURE = 7; // px of a digit

@@ -94,7 +94,6 @@ class Store extends EventTarget {
 			this.#acts[type](data);
 	}
 
-	/** What each kind of event does. */
 	#actsOf() {
 		// numbers of signals are those of one table: what is of another comes again with its list
 		const ours = (data) => data.generation === this.#generation;
@@ -162,8 +161,8 @@ class Store extends EventTarget {
 			const own = before?.identity === given.identity && before?.unit === given.unit;
 			const kept = signal ?? {recent: own ? before?.recent ?? [] : []};
 			const {why, text, code, good} = given.quality;
-			return this.#set(Object.assign(kept, {...given, why, text}), given.value, code, good,
-				given.age, now);
+			return this.#set(Object.assign(kept, {commanded: null, ...given, why, text}), given.value,
+				code, good, given.age, now);
 		});
 		this.#generation = list.generation;
 		this.signals = fresh;

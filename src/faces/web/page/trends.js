@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The view Trends: the signals that the user picks, in a window of time that is moved by buttons, by
 // dragging, by the wheel or by keys, and that follows the present until it is.
+import {alone} from "./alone.js";
 import {saveTable} from "./csv.js";
-import {alone, el, later, put} from "./dom.js";
+import {el, later, put} from "./dom.js";
 import {Entries} from "./entries.js";
 import {alarmsOf} from "./marks.js";
 import {Picker} from "./picker.js";
@@ -10,8 +11,8 @@ import {continued, emptyPast, heldAt, pastOf} from "./series.js";
 import {Stack} from "./stack.js";
 import {store} from "./store.js";
 import {Tools} from "./tools.js";
-import {besideOf, daysLater} from "./when.js";
-import {moment, qualityWords, valueText, withUnit} from "./words.js";
+import {besideOf, daysLater, moment} from "./when.js";
+import {qualityWords, valueText, withUnit} from "./words.js";
 
 const LINES = 6; // at most, in one colour each: that many --line-N has style.css
 const LEAST_MS = 2000, FRAME_MS = 1000, FETCH_MS = 5000, REST_MS = 250, POINTS = 600, BACK = 20;

@@ -1,14 +1,48 @@
 // SPDX-License-Identifier: MIT
 // Windows of time in the words of people: "yesterday 18:00", "Fri 18:00 - 20:00", "last night". All
 // in local time.
-import {dayText, moment} from "./words.js";
+import {clock, dateAndClock, msOf} from "./words.js";
 
-const DAYS = ["sun", "mon", "tue", "wed", "thu", "fri", "sat"];
-const MONTHS = ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+const DAYS = ["Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"];
+const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const NIGHT = [18, 8]; // begins and ends at these hours
 const DAY_MS = 86400000, WEEK_MS = 7 * DAY_MS;
+const DAYS_CLEAR_MS = 6 * DAY_MS; // so far away the day of the week says which one
 const NIGHT_MS = 18 * 3600000; // longer nobody means by "22:00 - 6:00"
 
+/** A mark of an axis of time: 12:30:05, 12:30; at midnight 29 Nov, at that of a year 2026. */
+export function tickText(at) {
+	if (at.getSeconds())
+		return clock(at.getTime());
+	if (at.getHours() || at.getMinutes())
+		return clock(at.getTime()).slice(0, 5);
+	return at.getMonth() || at.getDate() > 1 ? `${at.getDate()} ${MONTHS[at.getMonth()]}`
+		: String(at.getFullYear());
+}
+
+/**
+ * A time as people say it now (ms): 14:02, Thu 21:14, 12 Nov 21:14, 2025-11-27; exact: 14:02:34.
+ */
+export function moment(time, now, exact = false) {
+	const at = new Date(msOf(time)), today = new Date(now);
+	if (Number.isNaN(at.getTime()))
+		return "\u2014";
+	const minute = clock(at.getTime()).slice(0, exact ? 8 : 5);
+	if (at.toDateString() === today.toDateString())
+		return minute;
+	if (Math.abs(now - at) < DAYS_CLEAR_MS)
+		return `${DAYS[at.getDay()]} ${minute}`;
+	return at.getFullYear() === today.getFullYear()
+		? `${at.getDate()} ${MONTHS[at.getMonth()]} ${minute}` : dateAndClock(time).slice(0, 10);
+}
+
+/** Of a day: "Sat 28 Nov". */
+export function dayText(time) {
+	const at = new Date(time);
+	return `${DAYS[at.getDay()]} ${at.getDate()} ${MONTHS[at.getMonth()]}`;
+}
+
+const placeIn = (names, text) => names.findIndex((one) => one.toLowerCase() === text.slice(0, 3));
 const same = (a, b) => new Date(a).toDateString() === new Date(b).toDateString();
 /** So many days later, at the same time of the day. */
 export const daysLater = (time, days) => new Date(time).setDate(new Date(time).getDate() + days);
@@ -36,14 +70,14 @@ function dayOf(text, now) {
 	const days = ["today", "yesterday"].indexOf(text);
 	if (days >= 0)
 		return midnight(daysLater(now, -days));
-	const week = /^[a-z]{3,9}$/.test(text) ? DAYS.indexOf(text.slice(0, 3)) : -1;
+	const week = /^[a-z]{3,9}$/.test(text) ? placeIn(DAYS, text) : -1;
 	if (week >= 0)
 		return midnight(daysLater(now, -((new Date(now).getDay() - week + 7) % 7)));
 	const [, year, month, day] = /^(\d{4})-(\d{1,2})-(\d{1,2})$/.exec(text)?.map(Number) ?? [];
 	if (year)
 		return dateOf(year, month - 1, day);
 	const named = /^(?:[a-z]{3,9}\.?,? )?(\d{1,2})\.? ([a-z]{3,9})\.?(?: (\d{4}))?$/.exec(text);
-	const at = named ? MONTHS.indexOf(named[2].slice(0, 3)) : -1;
+	const at = named ? placeIn(MONTHS, named[2]) : -1;
 	if (at < 0)
 		return null;
 	const here = new Date(now).getFullYear();

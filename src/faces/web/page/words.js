@@ -90,9 +90,6 @@ export const remedyOf = (code) => QUALITIES.get(code)?.[2] ?? "";
 /** What kind of chip a device is: the name of its family, else the code with which its id begins. */
 export const kindOf = ({family, device}) => family || `Family ${(device ?? "").slice(0, 2)}`;
 
-/** Is a flag of the configuration on? */
-export const isOn = (text) => /^(on|yes|true|1)$/i.test(text);
-
 /** The shape beside the words, so that no state is shown by colour alone. */
 export const SHAPES = {good: "", uncertain: "?", bad: "\u00d7", unknown: "?"};
 
@@ -156,42 +153,6 @@ export function dateAndClock(time) {
 	const at = new Date(msOf(time));
 	return Number.isNaN(at.getTime()) ? "\u2014"
 		: `${at.getFullYear()}-${two(at.getMonth() + 1)}-${two(at.getDate())} ${clock(time)}`;
-}
-
-const DAYS = ["Sun", "Mon", "Tue", "Wed", "Thu", "Fri", "Sat"];
-const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
-const WEEK_MS = 6 * 86400000;
-
-/** A mark of an axis of time: 12:30:05, 12:30; at midnight 29 Nov, at that of a year 2026. */
-export function tickText(at) {
-	if (at.getSeconds())
-		return clock(at.getTime());
-	if (at.getHours() || at.getMinutes())
-		return clock(at.getTime()).slice(0, 5);
-	return at.getMonth() || at.getDate() > 1 ? `${at.getDate()} ${MONTHS[at.getMonth()]}`
-		: String(at.getFullYear());
-}
-
-/**
- * A time as people say it now (ms): 14:02, Thu 21:14, 12 Nov 21:14, 2025-11-27; exact: 14:02:34.
- */
-export function moment(time, now, exact = false) {
-	const at = new Date(msOf(time)), today = new Date(now);
-	if (Number.isNaN(at.getTime()))
-		return "\u2014";
-	const minute = clock(at.getTime()).slice(0, exact ? 8 : 5);
-	if (at.toDateString() === today.toDateString())
-		return minute;
-	if (Math.abs(now - at) < WEEK_MS)
-		return `${DAYS[at.getDay()]} ${minute}`;
-	return at.getFullYear() === today.getFullYear()
-		? `${at.getDate()} ${MONTHS[at.getMonth()]} ${minute}` : dateAndClock(time).slice(0, 10);
-}
-
-/** Of a day: "Sat 28 Nov". */
-export function dayText(time) {
-	const at = new Date(time);
-	return `${DAYS[at.getDay()]} ${at.getDate()} ${MONTHS[at.getMonth()]}`;
 }
 
 const PLAIN = {"high high": "very high", "low low": "very low"};
