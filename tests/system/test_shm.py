@@ -226,6 +226,7 @@ def test_of_two_owsd_of_one_instance_the_one_whose_lock_was_removed_ends(scene):
     first.thaw()
     assert first.wait() == 1
     owsdtest.logged(first, f"process {second.pid} serves the instance now")
+    assert os.path.exists(owsdtest.segment(second.name, "sock")), "the second one still serves there"
     scene.until(lambda: scene.get(second, "room") == "21", 10, "the other goes on")
     # thawed, the first one may have put its own image there before it saw the lock
     with opened(scene, second.name, control=True) as signals:

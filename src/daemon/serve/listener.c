@@ -89,8 +89,9 @@ static int open_local(struct serve *s, const char *path)
 {
 	gid_t gid;
 	mode_t mode = mode_for("owsd-control", &gid);
+	int fd = listen_at_path(path, mode, gid);
 
-	return listener_add(s, listen_at_path(path, mode, gid), (struct listener){0});
+	return listener_add(s, fd, (struct listener){.file = listen_file_at(AT_FDCWD, path)});
 }
 
 /* Is ListenSocket that socket? Then it is served as the configuration has it. */
@@ -109,13 +110,16 @@ static int open_own(struct serve *s)
 	char name[SEGMENT_FILE];
 	mode_t mode;
 	gid_t gid;
+	struct listener own = {.own = true};
+	int fd;
 
 	segment_file(s->instance, "sock", name);
 	if (s->directory < 0 || is_listen_socket(s, name))
 		return 0;
 	mode = mode_for("owsd-config", &gid);
-	return listener_add(s, listen_at_name(s->directory, name, SOCK_STREAM, mode, gid),
-	                    (struct listener){.own = true});
+	fd = listen_at_name(s->directory, name, SOCK_STREAM, mode, gid);
+	own.file = listen_file_at(s->directory, name);
+	return listener_add(s, fd, own);
 }
 
 /* Without IPv6 in the kernel the other loopback address serves. */
@@ -169,11 +173,14 @@ void listeners_close(struct serve *s)
 	char name[SEGMENT_FILE];
 
 	for (unsigned i = 0; i < s->listener_count; i++) {
-		client_part(s, s->listeners[i].fd, s->listeners[i].network);
-		if (s->listeners[i].own)
-			unlinkat(s->directory, segment_file(s->instance, "sock", name), 0);
-		else if (!s->listeners[i].network)
-			unlink(s->config->serve.socket);
+		const struct listener *l = &s->listeners[i];
+
+		if (l->own)
+			listen_remove(s->directory, segment_file(s->instance, "sock", name),
+			              &l->file);
+		else if (!l->network)
+			listen_remove(AT_FDCWD, s->config->serve.socket, &l->file);
+		client_part(s, l->fd, l->network);
 	}
 	s->listener_count = 0;
 	if (s->held.is)

@@ -13,6 +13,7 @@
 #include "src/daemon/serve/request.h"
 #include "src/daemon/serve/signals.h"
 #include "src/ground/service/budget.h"
+#include "src/ground/service/listen.h"
 #include "src/ground/text/log.h"
 #include "src/public/ows_layout.h"
 
@@ -157,6 +158,7 @@ struct serve {
 		int fd;
 		bool network, own;        /* own: NAME.sock in the directory of owsd's files */
 		struct listen_address at; /* of network */
+		struct listen_file file;  /* of the others */
 		int64_t came_ns;          /* who waits there came later than that */
 	} listeners[SERVER_LISTENERS];
 	unsigned listener_count, listener_at; /* listener_at: the one that accepts first */

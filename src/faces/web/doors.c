@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Listens, accepts, and lets in whoever sends a proper head in time. */
 #include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -67,9 +68,11 @@ int doors_socket(struct doors *doors, const char *path)
 	if (fd < 0)
 		return fd;
 	err = listeners_add(&doors->listeners, fd);
-	if (!err)
-		snprintf(doors->path, sizeof(doors->path), "%s", path);
-	return err;
+	if (err)
+		return err;
+	snprintf(doors->path, sizeof(doors->path), "%s", path);
+	doors->file = listen_file_at(AT_FDCWD, path);
+	return 0;
 }
 
 /* --- Visitors -------------------------------------------------------------------------------- */
@@ -282,6 +285,7 @@ int64_t doors_next(const struct doors *doors)
 
 void doors_close(struct doors *doors)
 {
+	listen_remove(AT_FDCWD, doors->path, &doors->file);
 	for (unsigned i = 0; doors->visitors && i < DOORS_CONNECTIONS; i++)
 		if (doors->visitors[i].used)
 			wire_close(doors->visitors[i].fd);
@@ -289,8 +293,6 @@ void doors_close(struct doors *doors)
 	for (unsigned i = 0; i < doors->listeners.count; i++)
 		if (doors->listeners.fds[i] >= 0)
 			wire_close_listener(doors->listeners.fds[i]);
-	if (*doors->path)
-		unlink(doors->path);
 	if (doors->epoll >= 0)
 		close(doors->epoll);
 	free(doors->visitors);

@@ -11,6 +11,7 @@
 
 #include "src/faces/kit/listeners.h"
 #include "src/faces/web/crowd.h"
+#include "src/ground/service/listen.h"
 
 #define DOORS_CONNECTIONS CROWD
 #define DOORS_PER_PEER 64 /* of one user at a socket, or one TCP address */
@@ -29,6 +30,7 @@ struct doors {
 	int64_t watched_ns; /* epoll has all doors since then; INT64_MAX: they pause */
 	struct crowd crowd;
 	char path[108]; /* of the socket, to remove at the end; "": the manager's */
+	struct listen_file file;
 	/* Takes a connection and closes it at the end. count: how many it has already. */
 	void (*welcome)(void *ctx, int fd, const struct sockaddr *address, socklen_t len);
 	unsigned (*count_inside)(void *ctx);

@@ -153,6 +153,7 @@ static int owsd_writer_run(const struct face_arguments *a, struct unix_signals *
 	struct writer writer = {.file = a->file, .instance = a->instance};
 	int prefix = journal_is_stderr(), listener;
 	char path[FACE_PATH];
+	struct listen_file own;
 	struct notify notify;
 
 	writer.log = log_create(a->level);
@@ -165,6 +166,7 @@ static int owsd_writer_run(const struct face_arguments *a, struct unix_signals *
 		log_destroy(writer.log);
 		return FACE_EXIT_RUN;
 	}
+	own = listen_file_at(AT_FDCWD, path);
 	if (notify_open(&notify))
 		log_warning(writer.log, "NOTIFY_SOCKET cannot be used");
 	if (*path)
@@ -175,8 +177,7 @@ static int owsd_writer_run(const struct face_arguments *a, struct unix_signals *
 	serve(&writer, &visitors, listener, !*path, signals, prefix);
 	notify_send(&notify, NOTIFY_STOPPING);
 	visitors_end(&visitors);
-	if (*path)
-		unlink(path);
+	listen_remove(AT_FDCWD, path, &own);
 	/* the listener ends with the process: what was sent to it may be slow to close */
 	notify_close(&notify);
 	log_finish(writer.log, STDERR_FILENO, prefix);

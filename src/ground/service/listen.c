@@ -105,6 +105,23 @@ int listen_at_name(int directory, const char *name, int type, mode_t mode, gid_t
 	return listen_local(&at, type, mode, group);
 }
 
+struct listen_file listen_file_at(int directory, const char *name)
+{
+	struct stat st;
+
+	if (fstatat(directory, name, &st, AT_SYMLINK_NOFOLLOW) < 0)
+		return (struct listen_file){0};
+	return (struct listen_file){.device = st.st_dev, .inode = st.st_ino};
+}
+
+void listen_remove(int directory, const char *name, const struct listen_file *file)
+{
+	struct listen_file there = listen_file_at(directory, name);
+
+	if (there.inode && there.inode == file->inode && there.device == file->device)
+		unlinkat(directory, name, 0);
+}
+
 static int listen_bind(const struct sockaddr_storage *at, bool only, bool later)
 {
 	bool is_v6 = at->ss_family == AF_INET6;

@@ -27,6 +27,18 @@ int listen_at_path(const char *path, mode_t mode, gid_t group);
  */
 int listen_at_name(int directory, const char *name, int type, mode_t mode, gid_t group);
 /*
+ * The file that a socket of this process is: its name may lead to that of another process by the
+ * time it is removed. One that is not there is none, and equals no other.
+ */
+struct listen_file {
+	dev_t device;
+	ino_t inode; /* 0: none */
+};
+/* What is there now; directory as in openat(2). */
+struct listen_file listen_file_at(int directory, const char *name);
+/* Remove that file, and no other. The socket is still open: no other file has its number yet. */
+void listen_remove(int directory, const char *name, const struct listen_file *file);
+/*
  * Listen at a TCP address. only: [::] does not serve IPv4. later: also if the machine does not have
  * that address yet.
  */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* The thread of the control room, its start and end, a reload, and the engine's side. */
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,7 +57,6 @@ static int control_add(struct control *c, int fd, uint32_t data)
 
 static int open_all(struct control *c)
 {
-	struct stat st;
 	int err;
 
 	c->epoll = epoll_create1(EPOLL_CLOEXEC);
@@ -71,9 +69,7 @@ static int open_all(struct control *c)
 	                             is_for_all(c) ? FOR_ALL : FOR_OWN, (gid_t)-1);
 	if (c->listener < 0)
 		return c->listener;
-	if (fstatat(c->directory, c->name, &st, AT_SYMLINK_NOFOLLOW) < 0)
-		return -errno;
-	c->inode = st.st_ino;
+	c->file = listen_file_at(c->directory, c->name);
 	err = news_open(c);
 	if (!err)
 		err = control_add(c, c->listener, LISTENER);
@@ -183,8 +179,6 @@ static void part_with(struct control *c, int *fd)
 
 void control_stop(struct control *c)
 {
-	struct stat st;
-
 	if (!c)
 		return;
 	__atomic_store_n(&c->stop, 1, __ATOMIC_RELEASE);
@@ -203,9 +197,8 @@ void control_stop(struct control *c)
 			part_with(c, &p->fd);
 	}
 	/* not that of another owsd which has taken the instance over */
-	if (c->listener >= 0 && fstatat(c->directory, c->name, &st, AT_SYMLINK_NOFOLLOW) == 0 &&
-	    st.st_ino == c->inode)
-		unlinkat(c->directory, c->name, 0);
+	if (c->listener >= 0)
+		listen_remove(c->directory, c->name, &c->file);
 	part_with(c, &c->listener);
 	while (c->away_count)
 		part_with(c, &c->away[--c->away_count]);

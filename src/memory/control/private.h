@@ -6,6 +6,7 @@
 
 #include "hal/base/time.h"
 #include "hal/bus/bus.h"
+#include "src/ground/service/listen.h"
 #include "src/ground/text/log.h"
 #include "src/memory/control/often.h"
 #include "src/memory/control/rights.h"
@@ -134,7 +135,7 @@ struct control {
 	struct rights rights;
 	int directory;
 	char name[48]; /* of the socket in it */
-	ino_t inode;
+	struct listen_file file;
 	struct log *log;
 	void (*ring)(void *ctx);
 	void *ring_ctx;

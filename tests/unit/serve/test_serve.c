@@ -714,6 +714,27 @@ static void test_directories_wait_for_each_other_when_all_rooms_are_taken(void)
 	TEST_ASSERT_NULL(port->take(port->ctx));
 }
 
+/* The path was removed by hand, and another owsd has begun there: NAME.sock is its, too. */
+static void test_the_sockets_of_another_server_in_their_place_stay(void)
+{
+	struct serve_setup setup = {.config = &config,
+	                            .instance = in.name,
+	                            .dir = folder_dir()->path,
+	                            .directory = folder_dir()->fd,
+	                            .ring = no_ring};
+	struct serve *other = NULL;
+	char why[128];
+
+	TEST_ASSERT_EQUAL_INT(0, unlink(path));
+	TEST_ASSERT_EQUAL_INT_MESSAGE(0, serve_create(&setup, &other, why, sizeof(why)), why);
+	serve_stop(serve);
+	TEST_ASSERT_EQUAL_INT(0, access(path, F_OK));
+	TEST_ASSERT_EQUAL_INT(0, access(folder_file(in.name, "sock"), F_OK));
+	serve_destroy(other);
+	TEST_ASSERT_EQUAL_INT(-1, access(path, F_OK));
+	TEST_ASSERT_EQUAL_INT(-1, access(folder_file(in.name, "sock"), F_OK));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -736,5 +757,6 @@ int main(void)
 	RUN_TEST(test_directories_wait_for_each_other_when_all_rooms_are_taken);
 	RUN_TEST(test_who_hangs_up_wants_no_answer);
 	RUN_TEST(test_who_came_while_no_descriptor_was_left_is_served_once_there_is_one);
+	RUN_TEST(test_the_sockets_of_another_server_in_their_place_stay);
 	return UNITY_END();
 }

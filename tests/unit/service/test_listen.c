@@ -104,6 +104,29 @@ static void test_at_a_name_of_a_folder_it_replaces_what_is_there(void)
 	close(directory);
 }
 
+static void test_a_socket_that_another_process_put_in_its_place_is_not_removed(void)
+{
+	int directory = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC), before = make(0600), fd;
+	struct listen_file own = listen_file_at(AT_FDCWD, at.sun_path), other;
+
+	fd = listen_at_name(directory, "socket", SOCK_STREAM, 0600, (gid_t)-1);
+	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
+	other = listen_file_at(directory, "socket");
+	listen_remove(AT_FDCWD, at.sun_path, &own);
+	close(before);
+	close(dial());
+	listen_remove(directory, "socket", &other);
+	TEST_ASSERT_EQUAL(-1, access(at.sun_path, F_OK));
+	/* a file that was never there is not the one that is there now, and none is no error */
+	own = listen_file_at(directory, "socket");
+	listen_remove(directory, "socket", &own);
+	close(make(0600));
+	listen_remove(directory, "socket", &own);
+	TEST_ASSERT_EQUAL(0, access(at.sun_path, F_OK));
+	close(fd);
+	close(directory);
+}
+
 static void test_an_address_of_another_machine_is_served_later_if_that_is_asked_for(void)
 {
 	struct sockaddr_storage to = {0};
@@ -244,6 +267,7 @@ int main(void)
 	RUN_TEST(test_a_file_that_is_no_socket_is_left_alone);
 	RUN_TEST(test_a_path_that_no_address_has_room_for_is_refused);
 	RUN_TEST(test_at_a_name_of_a_folder_it_replaces_what_is_there);
+	RUN_TEST(test_a_socket_that_another_process_put_in_its_place_is_not_removed);
 	RUN_TEST(test_an_address_of_another_machine_is_served_later_if_that_is_asked_for);
 	RUN_TEST(test_an_address_of_another_machine_is_not_here);
 	RUN_TEST(test_an_address_has_one_listener);
