@@ -14,6 +14,7 @@
 #include "src/daemon/serve/client.h"
 #include "src/daemon/serve/listener.h"
 #include "src/ground/service/listen.h"
+#include "src/memory/shm/corpse.h"
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/segment.h"
 
@@ -25,23 +26,35 @@ union address {
 	struct sockaddr_in6 v6;
 };
 
-/* fd: as listen_at_...() has returned it. */
-static int listener_add(struct serve *s, int fd, struct listener as)
+/* Accept at listener i. fd: as listen_at_...() has returned it. */
+static int listener_watch(struct serve *s, unsigned i, int fd)
 {
 	struct epoll_event event = {.events = EPOLLIN | EPOLLET};
 
-	event.data.u32 = SERVER_CLIENTS + 1 + s->listener_count;
+	event.data.u32 = SERVER_CLIENTS + 1 + i;
 	if (fd < 0)
 		return fd;
+	s->listeners[i].fd = fd; /* first: from then on the thread may accept there */
 	if (epoll_ctl(s->epoll_fd, EPOLL_CTL_ADD, fd, &event) < 0) {
 		int err = -errno;
 
+		s->listeners[i].fd = -1;
 		close(fd);
 		return err;
 	}
-	as.fd = fd;
-	s->listeners[s->listener_count++] = as;
 	return 0;
+}
+
+static int listener_add(struct serve *s, int fd, struct listener as)
+{
+	unsigned i = s->listener_count;
+	int err;
+
+	s->listeners[i] = as;
+	err = listener_watch(s, i, fd);
+	if (!err)
+		s->listener_count++;
+	return err;
 }
 
 /* The socket of [::] serves IPv4 too, unless an IPv4 address of the list has the same port. */
@@ -57,7 +70,7 @@ static bool is_v6_only(const struct config_serve *config, const struct listen_ad
 	return false;
 }
 
-static int open_network(struct serve *s, const struct listen_address *address)
+static int open_network(const struct serve *s, const struct listen_address *address)
 {
 	bool only = is_v6_only(&s->config->serve, address);
 	struct sockaddr_storage to;
@@ -72,7 +85,7 @@ static int open_network(struct serve *s, const struct listen_address *address)
 	/* accepted sockets inherit both options */
 	setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &one, sizeof(one));
 	setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &one, sizeof(one));
-	return listener_add(s, fd, (struct listener){.network = true, .at = *address});
+	return fd;
 }
 
 /* The mode of a socket for this user and that group, if there is one. */
@@ -129,20 +142,49 @@ static bool may_miss(const struct serve *s, const struct listen_address *address
 	       (err == -EAFNOSUPPORT || err == -EADDRNOTAVAIL);
 }
 
-static int open_configured(struct serve *s, char *why, size_t why_size)
+/*
+ * A corpse of owsd may have the port, and then the signals wait for nothing: listeners_look() asks
+ * for it again. What another program has is an error of the configuration.
+ */
+static bool may_be_free_later(int err)
+{
+	return err == -EADDRINUSE && corpse_of_program();
+}
+
+static int open_addresses(struct serve *s, char *why, size_t why_size)
 {
 	const struct config_serve *config = &s->config->serve;
 	char text[LISTEN_WHY_MAX];
-	int err;
 
 	for (unsigned i = 0; i < config->address_count; i++) {
-		err = open_network(s, &config->addresses[i]);
-		if (!err || may_miss(s, &config->addresses[i], err))
+		const struct listen_address *at = &config->addresses[i];
+		struct listener as = {.fd = -1, .network = true, .at = *at};
+		int err = listener_add(s, open_network(s, at), as);
+
+		if (!err || may_miss(s, at, err))
 			continue;
-		listen_why(&config->addresses[i], err, text);
-		snprintf(why, why_size, "%s%s", text, listen_remedy(err));
-		return err;
+		listen_why(at, err, text);
+		if (!may_be_free_later(err)) {
+			snprintf(why, why_size, "%s%s", text, listen_remedy(err));
+			return err;
+		}
+		s->unserved[s->listener_count] = err;
+		s->listeners[s->listener_count++] = as;
+		log_warning(s->log,
+		            "%s; an owsd that was killed is stuck in the kernel, and may have the "
+		            "port: owsd listens there once it is free",
+		            text);
 	}
+	return 0;
+}
+
+static int open_configured(struct serve *s, char *why, size_t why_size)
+{
+	const struct config_serve *config = &s->config->serve;
+	int err = open_addresses(s, why, why_size);
+
+	if (err)
+		return err;
 	if (!config->socket)
 		return 0;
 	err = open_local(s, config->socket);
@@ -168,6 +210,21 @@ int listeners_open(struct serve *s, char *why, size_t why_size)
 	return err;
 }
 
+int listeners_look(struct serve *s, unsigned i)
+{
+	const struct listener *l = &s->listeners[i];
+	struct sockaddr_storage at;
+	int err;
+
+	if (!l->network)
+		return 0;
+	err = l->fd < 0 ? listener_watch(s, i, open_network(s, &l->at)) : 0;
+	if (err)
+		return err;
+	listen_sockaddr(&l->at, &at);
+	return listen_is_here(&at) ? 0 : -EADDRNOTAVAIL;
+}
+
 void listeners_close(struct serve *s)
 {
 	char name[SEGMENT_FILE];
@@ -180,7 +237,8 @@ void listeners_close(struct serve *s)
 			              &l->file);
 		else if (!l->network)
 			listen_remove(AT_FDCWD, s->config->serve.socket, &l->file);
-		client_part(s, l->fd, l->network);
+		if (l->fd >= 0)
+			client_part(s, l->fd, l->network);
 	}
 	s->listener_count = 0;
 	if (s->held.is)

@@ -131,21 +131,16 @@ unsigned serve_absent(struct serve *s, char why[LISTEN_WHY_MAX])
 
 	*why = '\0';
 	for (unsigned i = 0; i < s->listener_count; i++) {
-		const struct listen_address *at = &s->listeners[i].at;
-		uint32_t bit = (uint32_t)1 << i;
+		int before = s->unserved[i], err = listeners_look(s, i);
 		char text[LISTEN_WHY_MAX];
-		struct sockaddr_storage to;
-		bool absent;
 
-		listen_sockaddr(at, &to);
-		absent = s->listeners[i].network && !listen_is_here(&to);
-		listen_why(at, -EADDRNOTAVAIL, text);
-		if (absent && !(s->absent & bit))
-			log_warning(s->log, "%s%s", text, listen_remedy(-EADDRNOTAVAIL));
-		else if (!absent && s->absent & bit)
+		s->unserved[i] = err;
+		listen_why(&s->listeners[i].at, err ? err : before, text);
+		if (err && err != before)
+			log_warning(s->log, "%s%s", text, listen_remedy(err));
+		else if (!err && before)
 			log_notice(s->log, "no longer: %s", text);
-		s->absent = absent ? s->absent | bit : s->absent & ~bit;
-		if (absent && !count++)
+		if (err && !count++)
 			memcpy(why, text, sizeof(text));
 	}
 	__atomic_store_n(&s->counters[COUNT_absent].value, count, __ATOMIC_RELAXED);

@@ -56,8 +56,9 @@ void serve_destroy(struct serve *serve);
 const struct bus_counter *serve_counters(const struct serve *serve, size_t *n);
 
 /*
- * How many addresses of Listen no interface of this machine has now; the first in why, else "". It
- * logs those that come and go. One thread may call this, before serve_stop().
+ * How many addresses of Listen cannot be reached now: no interface of this machine has them, or
+ * another process has their port; why of the first, else "". Opens those that have become free, and
+ * logs what comes and goes. One thread may call this, before serve_stop().
  */
 unsigned serve_absent(struct serve *serve, char why[LISTEN_WHY_MAX]);
 

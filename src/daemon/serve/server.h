@@ -122,7 +122,7 @@ struct client {
 	X(timeouts)       /* half requests, answers no client took, idle connections */ \
 	X(bytes_in)       /* bytes of clients */ \
 	X(bytes_out)      /* bytes to clients */ \
-	X(absent)         /* addresses of Listen that this machine lacks now */
+	X(absent)         /* addresses of Listen that cannot be reached now */
 
 enum serve_counter {
 #define X(name) COUNT_##name,
@@ -155,7 +155,7 @@ struct serve {
 	bool passes_on; /* a target is an owserver, which may ask this server in turn */
 
 	struct listener {
-		int fd;
+		int fd;                   /* -1: a network's that is not open yet */
 		bool network, own;        /* own: NAME.sock in the directory of owsd's files */
 		struct listen_address at; /* of network */
 		struct listen_file file;  /* of the others */
@@ -171,7 +171,7 @@ struct serve {
 		struct listener from;
 		struct sockaddr_in6 peer;
 	} held;
-	uint32_t absent; /* listeners at addresses that no interface has; serve_absent() */
+	int unserved[SERVER_LISTENERS]; /* what listeners_look() said of each; of serve_absent() */
 	int epoll_fd;
 
 	pthread_t thread;

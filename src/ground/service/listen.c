@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "src/ground/service/listen.h"
+#include "src/memory/shm/corpse.h"
 #include "src/memory/shm/peer.h"
 
 #define FIRST_FD 3 /* of sd_listen_fds(3) */
@@ -62,10 +63,19 @@ static int listen_local(const struct sockaddr_un *at, int type, mode_t mode, gid
 	return err;
 }
 
+/* The process that listens there, where fd is connected, answers nobody. */
+static bool is_of_corpse(int fd)
+{
+	struct peer peer;
+
+	return peer_look_into(fd, &peer, NULL, 0) == 0 && peer.pid > 0 && corpse_is(peer.pid);
+}
+
 /* Remove the socket of a process that was killed. */
 static int vacate(const struct sockaddr_un *at)
 {
 	struct stat st;
+	bool left;
 	int fd, err;
 
 	if (lstat(at->sun_path, &st) < 0)
@@ -76,8 +86,9 @@ static int vacate(const struct sockaddr_un *at)
 	if (fd < 0)
 		return -errno;
 	err = connect(fd, (const struct sockaddr *)at, sizeof(*at)) < 0 ? errno : 0;
+	left = err ? err == ECONNREFUSED : is_of_corpse(fd);
 	close(fd);
-	if (err != ECONNREFUSED)
+	if (!left)
 		return -EADDRINUSE;
 	return unlink(at->sun_path) < 0 ? -errno : 0;
 }

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/memory/shm/corpse.h"
 #include "src/memory/shm/lock.h"
 #include "src/memory/shm/owner.h"
 #include "src/memory/shm/segment.h"
@@ -94,32 +95,12 @@ static int write_pid(int fd)
 	return 0;
 }
 
-/* A corpse is a process that was killed while one of its threads cannot leave the kernel. */
-static bool is_corpse(pid_t pid)
-{
-	char path[32], text[512], *end;
-	ssize_t n;
-	int fd;
-
-	snprintf(path, sizeof(path), "/proc/%ld/stat", (long)pid);
-	fd = open(path, O_RDONLY | O_CLOEXEC);
-	if (fd < 0)
-		return false;
-	n = read(fd, text, sizeof(text) - 1);
-	close(fd);
-	if (n <= 0)
-		return false;
-	text[n] = '\0';
-	end = strrchr(text, ')');
-	return end != NULL && (strncmp(end, ") Z", 3) == 0 || strncmp(end, ") X", 3) == 0);
-}
-
 /*
  * Replace the file that a corpse has locked; byte 1 of fd, which is locked, keeps other owsds out.
  */
 static int replace_lock(int fd, int dir, const char *name)
 {
-	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !is_corpse(read_pid(fd)))
+	if (lock_bytes(fd, F_WRLCK, BYTE_PID, 1) < 0 || !corpse_is(read_pid(fd)))
 		return -EBUSY;
 	if (is_still_named(fd, dir, name) && unlinkat(dir, name, 0) < 0)
 		return -errno;
@@ -160,7 +141,7 @@ int segment_lock(const struct shm_dir *dir, const char *instance, pid_t *pid, bo
 		} else if (err == -EAGAIN || err == -EACCES) {
 			*pid = read_pid(fd);
 			err = -EBUSY;
-			if (*pid > 0 && is_corpse(*pid)) {
+			if (*pid > 0 && corpse_is(*pid)) {
 				err = replace_lock(fd, dir->fd, name);
 				*stolen = err == 0;
 			}
@@ -193,7 +174,7 @@ int segment_lock_look(const struct shm_dir *dir, const char *instance, pid_t *pi
 	if (held >= 0)
 		*pid = read_pid(fd);
 	if (held > 0)
-		held = !(*pid > 0 && is_corpse(*pid));
+		held = !(*pid > 0 && corpse_is(*pid));
 	close(fd);
 	return held;
 }
@@ -219,7 +200,7 @@ int segment_lock_any(const struct shm_dir *dir, const char *instance, pid_t *pid
 	if (err == -EAGAIN || err == -EACCES) {
 		*pid = read_pid(fd);
 		/* a corpse creates no files any more */
-		err = *pid > 0 && is_corpse(*pid) ? 0 : -EBUSY;
+		err = *pid > 0 && corpse_is(*pid) ? 0 : -EBUSY;
 	} else if (!err && !is_still_named(fd, dir->fd, name)) {
 		err = -EBUSY; /* another process replaces or removes the file */
 	}

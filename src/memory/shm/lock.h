@@ -10,8 +10,7 @@
 /*
  * Take the lock of the instance: one owsd for each name. Returns a descriptor to keep, or -EBUSY
  * (*pid gets the owner's number), -EACCES, -EPERM (a file of another user is in the way), another
- * negative errno. The lock of a corpse (a killed process that is stuck in the kernel) is replaced
- * and *stolen set.
+ * negative errno. The lock of a corpse is replaced and *stolen set.
  */
 int segment_lock(const struct shm_dir *dir, const char *instance, pid_t *pid, bool *stolen);
 /*

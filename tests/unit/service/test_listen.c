@@ -14,6 +14,7 @@
 #include "unity.h"
 
 #include "src/ground/service/listen.h"
+#include "tests/unit/aid/corpse.h"
 
 static char folder[] = "/tmp/listen.XXXXXX";
 static struct sockaddr_un at = {.sun_family = AF_UNIX};
@@ -68,6 +69,21 @@ static void test_what_a_process_listens_at_is_left_alone(void)
 	TEST_ASSERT_EQUAL(-EADDRINUSE, listen_at_path(at.sun_path, 0600, (gid_t)-1));
 	close(fd);
 	close(make(0600));
+}
+
+static void listen_there(void)
+{
+	make(0600);
+}
+
+static void test_the_socket_of_a_killed_process_that_is_stuck_is_not_in_the_way(void)
+{
+	struct corpse corpse;
+
+	corpse_make(&corpse, listen_there);
+	close(dial()); /* the kernel connects, and nobody answers */
+	close(make(0600));
+	corpse_end(&corpse);
 }
 
 static void test_a_file_that_is_no_socket_is_left_alone(void)
@@ -264,6 +280,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_socket_has_the_mode_that_is_asked_for_whatever_the_umask);
 	RUN_TEST(test_what_a_process_listens_at_is_left_alone);
+	RUN_TEST(test_the_socket_of_a_killed_process_that_is_stuck_is_not_in_the_way);
 	RUN_TEST(test_a_file_that_is_no_socket_is_left_alone);
 	RUN_TEST(test_a_path_that_no_address_has_room_for_is_refused);
 	RUN_TEST(test_at_a_name_of_a_folder_it_replaces_what_is_there);

@@ -18,6 +18,7 @@
 #include "src/memory/shm/segment.h"
 #include "src/public/ows.h"
 #include "tests/unit/aid/asleep.h"
+#include "tests/unit/aid/corpse.h"
 #include "tests/unit/aid/folder.h"
 
 #define SIZE 8192
@@ -181,55 +182,32 @@ static void test_a_lock_whose_file_was_removed_or_replaced_is_not_held(void)
 	close(second);
 }
 
-/* A leader that has gone while a thread of it lives on: a zombie that holds its locks. */
-static void *outlive(void *arg)
+static void take_lock(void)
 {
-	char c;
+	bool stolen;
+	pid_t pid;
 
-	while (read(*(int *)arg, &c, 1) < 0)
-		;
-	_exit(0);
+	if (segment_lock(folder_dir(), name, &pid, &stolen) < 0)
+		_exit(1);
 }
 
 static void test_a_corpses_lock_is_left_behind(void)
 {
-	static int hold[2], ready[2];
 	bool stolen, stolen_twice;
-	pid_t pid, child, other;
-	int fd, status;
-	char c;
+	struct corpse corpse;
+	pid_t pid, other;
+	int fd;
 
-	TEST_ASSERT_EQUAL(0, pipe(hold));
-	TEST_ASSERT_EQUAL(0, pipe(ready));
-	child = fork();
-	if (child == 0) {
-		pthread_t thread;
-
-		close(hold[1]);
-		if (segment_lock(folder_dir(), name, &pid, &stolen) < 0 ||
-		    pthread_create(&thread, NULL, outlive, &hold[0]) != 0 ||
-		    write(ready[1], "x", 1) != 1)
-			_exit(1);
-		pthread_exit(NULL);
-	}
-	TEST_ASSERT_GREATER_THAN(0, child);
-	TEST_ASSERT_EQUAL(1, read(ready[0], &c, 1));
-	fd = -1;
-	for (int64_t until = ows_now() + INT64_C(60000000000); fd < 0 && ows_now() < until;)
-		fd = segment_lock(folder_dir(), name, &pid, &stolen);
+	corpse_make(&corpse, take_lock);
+	fd = segment_lock(folder_dir(), name, &pid, &stolen);
 	TEST_ASSERT_GREATER_OR_EQUAL(0, fd);
 	TEST_ASSERT_TRUE(stolen);
-	TEST_ASSERT_EQUAL(child, pid);
+	TEST_ASSERT_EQUAL(corpse.pid, pid);
 	TEST_ASSERT_EQUAL(-EBUSY, segment_lock(folder_dir(), name, &other, &stolen_twice));
 	TEST_ASSERT_EQUAL(getpid(), other);
 	TEST_ASSERT_FALSE(stolen_twice);
-	TEST_ASSERT_EQUAL(1, write(hold[1], "x", 1));
-	TEST_ASSERT_EQUAL(child, waitpid(child, &status, 0));
+	corpse_end(&corpse);
 	close(fd);
-	for (int i = 0; i < 2; i++) {
-		close(hold[i]);
-		close(ready[i]);
-	}
 }
 
 static void test_a_dead_owners_lock_is_free(void)

@@ -166,19 +166,26 @@ static bool has_counted(struct ows *ows, const char *name)
 static void check_listen(struct doctor *d)
 {
 	const struct config_serve *serve = d->config ? &d->config->serve : NULL;
-	char why[LISTEN_WHY_MAX] = "no interface of this machine has an address of Listen";
+	char why[LISTEN_WHY_MAX] = "one is not of this machine, or another process has its port";
 	struct sockaddr_storage at;
+	bool absent = false;
 
 	if (!has_counted(d->ows, "served_absent"))
 		return;
 	for (unsigned i = 0; serve && i < serve->address_count; i++) {
 		listen_sockaddr(&serve->addresses[i], &at);
-		if (!listen_is_here(&at))
-			listen_why(&serve->addresses[i], -EADDRNOTAVAIL, why);
+		if (listen_is_here(&at))
+			continue;
+		absent = true;
+		listen_why(&serve->addresses[i], -EADDRNOTAVAIL, why);
 	}
 	report_add(&d->found, BOARD_MISSING, "owsd is not reached at each address of Listen: %s",
 	           why);
-	report_remedy(&d->found, "%s", listen_remedy(-EADDRNOTAVAIL) + strlen("; "));
+	if (absent)
+		report_remedy(&d->found, "%s", listen_remedy(-EADDRNOTAVAIL) + strlen("; "));
+	else
+		report_remedy(&d->found, "systemctl status owsd@%s names it, and the reason",
+		              d->instance);
 }
 
 void check_owsd(struct doctor *d)
