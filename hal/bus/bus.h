@@ -218,6 +218,23 @@ static inline int64_t bus_now(const struct bus_env *env)
 }
 void bus_report(const struct bus_env *env, enum bus_news news, int err, const char *text);
 
+/* What was reported of a loss. All zero while the target is up, and when a bus is suspended. */
+struct bus_loss {
+	bool told, gone;
+};
+
+/*
+ * Is this a BUS_DOWN to report? gone: it is not there. Of a target that is there again, and cannot
+ * be opened, the reason is another.
+ */
+static inline bool bus_loss_news(struct bus_loss *loss, bool gone)
+{
+	if (loss->told && loss->gone == gone)
+		return false;
+	*loss = (struct bus_loss){.told = true, .gone = gone};
+	return true;
+}
+
 /* A running total that `owsctl stats` shows; name is a literal such as "keepalives". */
 struct bus_counter {
 	const char *name;

@@ -69,9 +69,8 @@ static void go_down_chip(struct gpio_bus *gpio, int err, const char *why)
 	gpio_close(gpio->chip);
 	gpio->chip = NULL;
 	gpio->next_ns = bus_now(gpio->bus.env) + AGAIN_NS;
-	if (!gpio->told)
+	if (bus_loss_news(&gpio->loss, err == -ENODEV))
 		bus_report(gpio->bus.env, BUS_DOWN, err, why);
-	gpio->told = true;
 }
 
 static int bring_up(struct gpio_bus *gpio, char *why, size_t why_size)
@@ -119,7 +118,7 @@ static int64_t gpio_step(struct bus *bus, int64_t now)
 		go_down_chip(gpio, err, why);
 		return gpio->next_ns;
 	}
-	gpio->told = false;
+	gpio->loss = (struct bus_loss){0};
 	gpio->next_ns = now + LOOK_NS;
 	bus_count(&gpio->count[GPIO_OPENS], 1);
 	bus_report(gpio->bus.env, BUS_UP, 0, "");
@@ -236,6 +235,7 @@ static void gpio_suspend(struct bus *bus, bool yes)
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
 
 	gpio->suspended = yes;
+	gpio->loss = (struct bus_loss){0};
 	gpio->next_ns = 0;
 	if (!yes)
 		return;

@@ -33,7 +33,8 @@ struct gpio_bus {
 	struct gpio_chip *chip;     /* NULL: down */
 	unsigned lines;
 	struct line_state *line;
-	bool told, suspended;
+	bool suspended;
+	struct bus_loss loss;
 	int64_t next_ns;
 	struct bus_counter count[GPIO_COUNTS];
 };

@@ -125,16 +125,10 @@ static int open_master(struct native *native, char why[BUS_EVENT_TEXT])
 	return err;
 }
 
-/* Of one that is there again, and does not open, it is another reason than that it was gone. */
 static void tell_down(struct native *native, int err, const char *why)
 {
-	bool is_gone = err == -ENODEV;
-
-	if (native->told && native->told_gone == is_gone)
-		return;
-	native->told = true;
-	native->told_gone = is_gone;
-	native_event(native, BUS_DOWN, NULL, err, why);
+	if (bus_loss_news(&native->loss, err == -ENODEV))
+		native_event(native, BUS_DOWN, NULL, err, why);
 }
 
 int64_t master_step(struct native *native, int64_t now)
@@ -157,7 +151,7 @@ int64_t master_step(struct native *native, int64_t now)
 		return native->open_ns;
 	}
 	native->pause_ns = 0;
-	native->told = false;
+	native->loss = (struct bus_loss){0};
 	native->up = true;
 	native->up_ns = native_now(native);
 	take_all_channels(native);

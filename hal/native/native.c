@@ -168,7 +168,7 @@ void native_suspend(struct bus *bus, bool yes)
 		refuse_all(native);
 		native->failed = native->down_err && see_master(native, &native->failed_mark) > 0;
 	}
-	native->told = false;
+	native->loss = (struct bus_loss){0};
 	native->open_ns = native->pause_ns = 0;
 }
 

@@ -290,8 +290,7 @@ struct native {
 
 	/* master.c; native.c, when it suspends the bus or lets it go on */
 	bool up;
-	/* of a loss; and that it is gone */
-	bool told, told_gone;
+	struct bus_loss loss;
 	int down_err;          /* why it is down; 0: it was not opened, or let go of in order */
 	int64_t open_ns;       /* next try to open */
 	int64_t pause_ns;      /* between tries */

@@ -50,7 +50,8 @@ struct owserver {
 	struct bus bus;
 	enum state state;
 	int64_t retry_ns, backoff_ns, give_up_ns;
-	bool was_up, is_down_reported, simulated;
+	bool was_up, simulated;
+	struct bus_loss told;
 	struct bus_event loss; /* the event for the next step to report, if text is set */
 	struct bus_counter counter[COUNTERS];
 	struct talk talk;
@@ -112,9 +113,9 @@ static void go_down(struct owserver *server, int err, const char *text)
 	server->backoff_ns *= 2;
 	if (server->backoff_ns > BACKOFF_MAX)
 		server->backoff_ns = BACKOFF_MAX;
-	if (server->is_down_reported || server->bus.suspended)
+	if (server->bus.suspended ||
+	    !bus_loss_news(&server->told, err != -EACCES && err != -EPROTO))
 		return;
-	server->is_down_reported = true;
 	server->loss = (struct bus_event){.news = BUS_DOWN, .err = err};
 	snprintf(server->loss.text, sizeof(server->loss.text), "%s", text);
 }
@@ -127,7 +128,7 @@ static void go_up(struct owserver *server, int64_t cache_ns)
 		bus_count(&server->counter[RECONNECTS], 1);
 	server->state = UP;
 	server->was_up = true;
-	server->is_down_reported = false;
+	server->told = (struct bus_loss){0};
 	snprintf(event.text, sizeof(event.text), "connected to owserver at %s",
 	         server->talk.connection.peer);
 	server->bus.env->event(server->bus.env->ctx, &event);
@@ -143,9 +144,14 @@ static void report_loss(struct owserver *server)
 
 /* --- Coming up, slice by slice --------------------------------------------------------------- */
 
-/* Nothing was sent: nobody listens there, or the host cannot be reached. */
+/*
+ * Nothing was sent: nobody listens there, the host cannot be reached, or who is there is not
+ * believed, or may not be asked.
+ */
 static int as_absence(int err)
 {
+	if (err == -EPERM || err == -EACCES)
+		return -EACCES;
 	return err == -ECONNREFUSED ? err : -ENOTCONN;
 }
 
@@ -299,7 +305,8 @@ static void owserver_suspend(struct bus *bus, bool yes)
 	server->state = DOWN;
 	server->retry_ns = 0;
 	server->backoff_ns = BACKOFF_MIN;
-	server->was_up = server->is_down_reported = false;
+	server->was_up = false;
+	server->told = (struct bus_loss){0};
 }
 
 /* A NOP is answered without a look at the wire, and not by a server that hangs. */

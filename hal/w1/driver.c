@@ -261,6 +261,7 @@ bool w1_offers(struct w1_slave *slave, const char *name, int element)
 		return true;
 	if (!driver)
 		return is_offered_raw(slave);
+	slave->told_driver = false;
 	for (unsigned i = 0; i < driver->property_count; i++) {
 		const struct w1_property *property = &driver->properties[i];
 

@@ -326,6 +326,49 @@ static void test_a_chip_that_goes_is_noticed_without_a_request(void)
 	TEST_ASSERT_EQUAL_UINT(1, host_events(&host, BUS_DOWN));
 }
 
+/* The error of the last BUS_DOWN of so many. */
+static int down_of(unsigned count)
+{
+	int err = 0;
+
+	TEST_ASSERT_EQUAL_UINT(count, host_events(&host, BUS_DOWN));
+	for (unsigned i = 0; i < host.events; i++)
+		if (host.event[i].news == BUS_DOWN)
+			err = host.event[i].err;
+	return err;
+}
+
+static void test_a_chip_that_is_back_and_cannot_be_opened_is_not_called_gone(void)
+{
+	start();
+	fake_gpio.gone = true;
+	fake_gpio.open_err = -ENODEV;
+	host_run(&host, bus, host.now + 6 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, down_of(1));
+	fake_gpio.gone = false;
+	fake_gpio.open_err = -EACCES;
+	host_run(&host, bus, host.now + 6 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(-EACCES, down_of(2));
+	fake_gpio.open_err = 0;
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&host, BUS_UP));
+	fake_gpio.gone = true;
+	fake_gpio.open_err = -ENODEV;
+	host_run(&host, bus, host.now + 6 * HOST_S);
+	TEST_ASSERT_EQUAL_INT(-ENODEV, down_of(3));
+}
+
+static void test_a_chip_that_cannot_be_opened_after_a_pause_says_so_again(void)
+{
+	fake_gpio.open_err = -EACCES;
+	start();
+	TEST_ASSERT_EQUAL_INT(-EACCES, down_of(1));
+	bus_suspend(bus, true);
+	bus_suspend(bus, false);
+	host_run(&host, bus, host.now + HOST_S);
+	TEST_ASSERT_EQUAL_INT(-EACCES, down_of(2));
+}
+
 static void test_suspended_it_holds_nothing(void)
 {
 	start();
@@ -410,6 +453,8 @@ int main(void)
 	RUN_TEST(test_without_the_right_the_group_is_named);
 	RUN_TEST(test_a_chip_that_goes_takes_the_target_down_and_back);
 	RUN_TEST(test_a_chip_that_goes_is_noticed_without_a_request);
+	RUN_TEST(test_a_chip_that_is_back_and_cannot_be_opened_is_not_called_gone);
+	RUN_TEST(test_a_chip_that_cannot_be_opened_after_a_pause_says_so_again);
 	RUN_TEST(test_suspended_it_holds_nothing);
 	RUN_TEST(test_a_chip_is_named_or_refused);
 	RUN_TEST(test_a_line_is_written_as_chip_and_line_with_words_behind);

@@ -129,6 +129,38 @@ static void test_a_target_that_is_not_there_is_tried_for_ever_and_told_once(void
 	TEST_ASSERT_EQUAL_UINT64(0, counted("reconnects"));
 }
 
+/* As of a port that another program has taken: "connection refused" is no longer true. */
+static void test_what_answers_in_the_place_of_one_that_was_not_there_is_told(void)
+{
+	struct pollfd there = {.events = POLLIN};
+	int64_t until = host_now(&host) + PATIENCE;
+	int fd = -1;
+
+	peer_start(&peer, AF_INET, "");
+	peer_stop(&peer);
+	bus = host_bus(&host, peer.target);
+	goes_down_with(-ECONNREFUSED, "refused");
+	there.fd = peer.hold_fd;
+	TEST_ASSERT_EQUAL_INT(0, listen(peer.hold_fd, 8));
+	while (host.events < 2 && host_now(&host) < until) {
+		host_run(&host, bus, host_now(&host) + 10 * HOST_MS);
+		if (poll(&there, 1, 0) <= 0)
+			continue;
+		if (fd >= 0)
+			close(fd);
+		fd = accept(peer.hold_fd, NULL, NULL);
+		TEST_ASSERT_EQUAL_INT(24, send(fd, "HTTP/1.1 400 Bad Request", 24, MSG_NOSIGNAL));
+	}
+	if (fd >= 0)
+		close(fd);
+	TEST_ASSERT_EQUAL_UINT(2, host.events);
+	TEST_ASSERT_EQUAL_UINT8(BUS_DOWN, host.event[1].news);
+	TEST_ASSERT_EQUAL_INT32_MESSAGE(-EPROTO, host.event[1].err, host.event[1].text);
+	/* and it goes in turn */
+	peer_end(&peer);
+	goes_down_with(-ECONNREFUSED, "refused");
+}
+
 static void test_a_server_that_goes_while_idle_is_noticed(void)
 {
 	serve("");
@@ -296,6 +328,7 @@ int main(void)
 	RUN_TEST(test_the_answer_comes_before_the_news_of_the_loss);
 	RUN_TEST(test_a_reset_is_a_loss);
 	RUN_TEST(test_a_target_that_is_not_there_is_tried_for_ever_and_told_once);
+	RUN_TEST(test_what_answers_in_the_place_of_one_that_was_not_there_is_told);
 	RUN_TEST(test_a_server_that_goes_while_idle_is_noticed);
 	RUN_TEST(test_a_server_that_closes_and_then_only_listens_is_noticed);
 	RUN_TEST(test_an_idle_bus_has_nothing_to_do_until_its_server_closes);

@@ -419,6 +419,19 @@ static void test_a_thermometer_whose_driver_was_unloaded_is_told(void)
 	TEST_ASSERT_TRUE(fs_told(BUS_NOTE, WARM ": no driver that owsd uses has it"));
 }
 
+static void test_a_driver_that_goes_again_is_told_again(void)
+{
+	fs_slave(WARM);
+	fs_start();
+	fs_fails(-ENOENT, WARM_OW "/temphigh");
+	fs_scratchpad(WARM, 0x151, 75, 70, 0x7f, "YES");
+	fs_reads("     21.0625", WARM_OW "/temperature");
+	TEST_ASSERT_EQUAL_UINT(1, host_events(&fs.host, BUS_NOTE));
+	fs_erase(WARM "/w1_slave");
+	fs_fails(-ENOENT, WARM_OW "/templow");
+	TEST_ASSERT_EQUAL_UINT(2, host_events(&fs.host, BUS_NOTE));
+}
+
 static void test_a_directory_has_what_there_are_attributes_for(void)
 {
 	fs_slave("12-0000000000e1");
@@ -507,6 +520,7 @@ int main(void)
 	RUN_TEST(test_an_eeprom_is_written_row_by_row);
 	RUN_TEST(test_raw_access_serves_the_rest);
 	RUN_TEST(test_a_slave_without_driver_is_told_once);
+	RUN_TEST(test_a_driver_that_goes_again_is_told_again);
 	RUN_TEST(test_a_thermometer_whose_driver_was_unloaded_is_told);
 	RUN_TEST(test_a_directory_has_what_there_are_attributes_for);
 	RUN_TEST(test_who_may_not_write_is_told_how);
