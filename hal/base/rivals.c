@@ -150,10 +150,16 @@ int rivals_refused(int err, const struct rivals_device *device, int holder, char
 		snprintf(why, size, "no %s: %s", device->name, device->missing);
 		return -ENODEV;
 	case -EACCES:
-	case -EPERM:
 		snprintf(why, size,
 		         "no permission for %s: the user has to be in the group that owns it (%s)",
 		         device->name, device->group);
+		return -EACCES;
+	case -EPERM:
+		/* rights are the error before; this one is a filter of the control group */
+		snprintf(why, size,
+		         "%s: a device filter refuses it (DeviceAllow= of the service, devices of "
+		         "the container): restart owsd, or allow it there",
+		         device->name);
 		return -EACCES;
 	case -EADDRINUSE:
 		rivals_name(RIVALS_PROC, holder, who, sizeof(who));

@@ -94,7 +94,7 @@ static int64_t gpio_step(struct bus *bus, int64_t now)
 {
 	struct gpio_bus *gpio = (struct gpio_bus *)bus;
 	struct gpio_info info;
-	char why[100] = "";
+	char why[BUS_EVENT_TEXT] = "";
 	int err;
 
 	if (gpio->suspended)

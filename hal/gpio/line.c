@@ -34,8 +34,8 @@ static int open_label(const char *label, struct gpio_chip **chip, char *why, siz
 {
 	DIR *dir = opendir(DEV);
 	struct dirent *entry;
-	bool refused = false;
-	int err = -ENODEV;
+	const struct rivals_device chips = {DEV PREFIX "*", DEV, "", "gpio"};
+	int err = -ENODEV, refused = 0;
 
 	while (err && dir && (entry = readdir(dir))) {
 		char path[sizeof(DEV) + sizeof(entry->d_name)];
@@ -45,7 +45,8 @@ static int open_label(const char *label, struct gpio_chip **chip, char *why, siz
 			continue;
 		snprintf(path, sizeof(path), DEV "%s", entry->d_name);
 		failed = gpio_api()->open(path, chip);
-		refused |= failed == -EACCES || failed == -EPERM;
+		if (failed == -EACCES || failed == -EPERM)
+			refused = failed;
 		if (failed)
 			continue;
 		if (strcmp(gpio_api()->label(*chip), label) == 0) {
@@ -57,13 +58,12 @@ static int open_label(const char *label, struct gpio_chip **chip, char *why, siz
 	}
 	if (dir)
 		closedir(dir);
+	if (err && refused)
+		return rivals_refused(refused, &chips, 0, why, why_size);
 	if (err)
 		snprintf(why, why_size,
-		         refused ? "no permission for the chips in /dev: the user has "
-		                   "to be in the group that owns them (gpio)"
-		                 : "no chip is labelled %s: gpiodetect lists the chips there are",
-		         label);
-	return err && refused ? -EACCES : err;
+		         "no chip is labelled %s: gpiodetect lists the chips there are", label);
+	return err;
 }
 
 static bool is_digits(const char *text, size_t len)

@@ -457,8 +457,8 @@ static void test_a_device_that_cannot_be_opened_is_named_with_what_to_do(void)
 	         "no permission for the stick: the user has to be in the group that owns it "
 	         "(dialout)"},
 		{-EPERM, -EACCES,
-	         "no permission for the stick: the user has to be in the group that owns it "
-	         "(dialout)"},
+	         "the stick: a device filter refuses it (DeviceAllow= of the service, devices of "
+	         "the container): restart owsd, or allow it there"},
 		{-EADDRINUSE, -EBUSY, "the stick is in use by another target or process"},
 		{-EBUSY, -EBUSY, "the stick is in use by "},
 		{-EIO, -EIO, "the stick: Input/output error"},

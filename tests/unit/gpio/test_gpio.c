@@ -302,6 +302,18 @@ static void test_without_the_right_the_group_is_named(void)
 	TEST_ASSERT_NOT_NULL(strstr(host.event[0].text, "group that owns it (gpio)"));
 }
 
+/* Of a service with DeviceAllow=, whoever owns the file; not one word is cut off. */
+static void test_where_a_filter_refuses_it_no_group_is_named(void)
+{
+	fake_gpio.open_err = -EPERM;
+	start();
+	TEST_ASSERT_EQUAL_INT(-EACCES, host.event[0].err);
+	TEST_ASSERT_EQUAL_STRING("/dev/gpiochip0: a device filter refuses it (DeviceAllow= of the "
+	                         "service, devices of the container): restart owsd, or allow it "
+	                         "there",
+	                         host.event[0].text);
+}
+
 static void test_a_chip_that_goes_takes_the_target_down_and_back(void)
 {
 	start();
@@ -451,6 +463,7 @@ int main(void)
 	RUN_TEST(test_a_missing_chip_is_told_once_and_served_when_it_comes);
 	RUN_TEST(test_a_file_that_is_no_chip_is_told_from_none);
 	RUN_TEST(test_without_the_right_the_group_is_named);
+	RUN_TEST(test_where_a_filter_refuses_it_no_group_is_named);
 	RUN_TEST(test_a_chip_that_goes_takes_the_target_down_and_back);
 	RUN_TEST(test_a_chip_that_goes_is_noticed_without_a_request);
 	RUN_TEST(test_a_chip_that_is_back_and_cannot_be_opened_is_not_called_gone);
