@@ -167,6 +167,16 @@ static void test_json_has_the_same_with_what_is_safe(void)
 	      "{\"kind\":\"fact\",\"check\":\"board\",\"text\":\"board: Raspberry Pi 4 Model B");
 }
 
+static void test_an_adapter_of_the_kernel_is_left_there_and_both_ways_are_named(void)
+{
+	char first[600];
+
+	unpack("tests/unit/data/machines/no-file-usb-kernel.machine", first, sizeof(first));
+	doctor_at_root("");
+	holds(out, "note: the kernel's driver DS9490R has the USB adapter: target w1\n"
+	           "    with usb: in place of w1 owsd takes it");
+}
+
 static void test_a_wrong_file_is_reported_once_and_not_by_each_service(void)
 {
 	char first[600];
@@ -460,6 +470,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_the_first_line_is_the_remedy_of_each_recorded_machine);
 	RUN_TEST(test_json_has_the_same_with_what_is_safe);
+	RUN_TEST(test_an_adapter_of_the_kernel_is_left_there_and_both_ways_are_named);
 	RUN_TEST(test_a_wrong_file_is_reported_once_and_not_by_each_service);
 	RUN_TEST(test_a_command_to_paste_has_the_words_that_it_names_and_no_others);
 	RUN_TEST(test_only_commands_that_change_no_plant_are_safe);

@@ -196,18 +196,37 @@ static void check_port(struct doctor *d, const char *target)
 	}
 }
 
+/* The DS9490R that are plugged in: how many. */
+static unsigned find_adapters(const struct doctor *d, struct usb_place places[USB_PLACES])
+{
+	char devices[DOCTOR_ROOT + 24];
+
+	snprintf(devices, sizeof(devices), "%s/sys/bus/usb/devices", d->root);
+	return usb_find(devices, places);
+}
+
+/* Has a driver of the kernel the first of them? usbfs is a program. */
+static bool kernel_has_adapter(const struct doctor *d, char driver[USB_NAME])
+{
+	struct usb_place places[USB_PLACES];
+
+	if (!find_adapters(d, places) || !*places[0].driver || !strcmp(places[0].driver, "usbfs"))
+		return false;
+	snprintf(driver, USB_NAME, "%s", places[0].driver);
+	return true;
+}
+
 /*
  * The target of an adapter that auto does not open: a DS9490R that no driver has, else the one
  * serial port, of which nobody but a person knows what is at it. "": there is none.
  */
 static void left_by_auto(const struct doctor *d, char target[PORT_TEXT + 8])
 {
-	char devices[DOCTOR_ROOT + 24], port[PORT_TEXT];
+	char port[PORT_TEXT];
 	struct usb_place places[USB_PLACES];
 
-	snprintf(devices, sizeof(devices), "%s/sys/bus/usb/devices", d->root);
 	find_port(d, port);
-	if (usb_find(devices, places) && !*places[0].driver)
+	if (find_adapters(d, places) && !*places[0].driver)
 		snprintf(target, PORT_TEXT + 8, "usb:");
 	else
 		snprintf(target, PORT_TEXT + 8, "%s%s", *port ? "serial:" : "", port);
@@ -337,11 +356,15 @@ void check_rights(struct doctor *d)
 
 /* --- Signals --------------------------------------------------------------------------------- */
 
-/* That of the file, else what is there. */
-static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8])
+/* That of the file, else what is there. driver: the kernel's that has the adapter, or "". */
+static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8],
+                               char driver[USB_NAME])
 {
+	*driver = '\0';
 	if (d->config && d->config->target_count && !seen_automatic(d))
 		return d->config->targets[0].text;
+	if (!seen_owserver(d->root) && kernel_has_adapter(d, driver))
+		return "w1";
 	left_by_auto(d, text);
 	if (!*text || seen_owserver(d->root) || (strcmp(text, "usb:") != 0 && !d->board.missing))
 		snprintf(text, PORT_TEXT + 8, "auto");
@@ -355,19 +378,27 @@ static const char *scan_target(const struct doctor *d, char text[PORT_TEXT + 8])
 void check_signals(struct doctor *d)
 {
 	bool there = !access(d->file, F_OK) || errno != ENOENT;
-	char target[PORT_TEXT + 8];
+	char target[PORT_TEXT + 8], driver[USB_NAME];
+	const char *where;
 
 	/* an owsd that somebody runs by hand may need no file */
 	if (there ? !d->config || d->errors || d->config->item_count : !units_owsd(d))
 		return;
+	where = scan_target(d, target, driver);
 	report_add(&d->found, BOARD_MISSING, there ? "%s has no signals" : "there is no %s",
 	           d->file);
 	if (there)
-		report_command(&d->found, SCAN_BEGIN "--merge %s " SCAN_END, d->instance,
-		               scan_target(d, target), d->file, d->file, d->instance);
+		report_command(&d->found, SCAN_BEGIN "--merge %s " SCAN_END, d->instance, where,
+		               d->file, d->file, d->instance);
 	else
-		report_command(&d->found, SCAN_BEGIN SCAN_END, d->instance, scan_target(d, target),
-		               d->file, d->instance);
+		report_command(&d->found, SCAN_BEGIN SCAN_END, d->instance, where, d->file,
+		               d->instance);
+	if (!*driver)
+		return;
+	report_add(&d->found, BOARD_NOTE, "the kernel's driver %s has the USB adapter: target w1",
+	           driver);
+	report_remedy(&d->found, "with usb: in place of w1 owsd takes it from that driver, and "
+	                         "gives it back at its end");
 }
 
 /* --- The clock ------------------------------------------------------------------------------- */
