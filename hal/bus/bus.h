@@ -62,6 +62,8 @@ struct bus_req {
 	uint8_t op;   /* enum bus_op */
 	uint8_t prio; /* enum bus_prio */
 	bool fresh;   /* read past every cache */
+	bool whole;   /* DIR of alarms: to be listed is an alarm by itself, so no id is guessed from
+	                its first bits */
 	/*
 	 * READ: where the answer is a number, its text is not needed. WRITE: `value` is written,
 	 * and data is room for BUS_NUMBER_TEXT bytes, where a bus may put its text.

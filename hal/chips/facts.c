@@ -136,6 +136,14 @@ bool facts_shows_device(const char *text)
 	return !row || !(row->offline || strcmp(row->name, "present") == 0);
 }
 
+bool facts_latches(const char *text)
+{
+	struct path path;
+
+	return path_split(text, strlen(text), &path) || !path.has_rom ||
+	       family_of(path.rom[0])->latches;
+}
+
 /* A sensor is good to no more, whatever its register resolves. */
 static const struct {
 	const char *unit;

@@ -37,6 +37,8 @@ bool quantity_of(const char *path, struct quantity *quantity);
  * else is known without asking it, nor `present`, which may say 0.
  */
 bool facts_shows_device(const char *path);
+/* Has the device of the path a latch that tells of its alarm? True of an alias: it may be any. */
+bool facts_latches(const char *path);
 
 /*
  * How many digits after the point a person wants of a number in this unit; -1: all that it has.

@@ -128,6 +128,7 @@ static int next_device(struct native *native, unsigned n, struct search *search,
 		return search_next(search, link);
 	search->last = true;
 	bool alarm = search->command == ONEWIRE_ALARM_SEARCH;
+	link->whole = job && job->req->whole;
 	int err = link->ops->search(link, alarm, search->family, whole_found, &whole);
 	return whole.err ? whole.err : err < 0 ? err : 0;
 }
@@ -374,7 +375,8 @@ void hunt_scan(struct native *native, struct job *job, int64_t now)
 		search_begin(&job->search, job->kind == JOB_ALARM, job->families[job->family_i]);
 		job->searching = true;
 		job->mark = job->out;
-		if (job->kind == JOB_ALARM && ++channel->alarm_searches % FULL_EVERY)
+		if (job->kind == JOB_ALARM && !job->req->whole &&
+		    ++channel->alarm_searches % FULL_EVERY)
 			job->search.lone = is_latched;
 	}
 	job->search.ctx = &ctx;

@@ -158,7 +158,7 @@ static int search_look(struct walk *walk, const struct prefix *prefix)
 	const uint8_t *known = guess_known(walk, prefix, &own);
 	uint8_t path[8], slots[25];
 	unsigned bits = own > prefix->bits + 1 ? own : prefix->bits + 1;
-	bool latches = known && family_of(known[0])->latches;
+	bool latches = known && !walk->link->link.whole && family_of(known[0])->latches;
 	unsigned n = known && (walk->full || (prefix->answered && !latches)) ? 8 : (bits + 7) / 8;
 
 	memcpy(path, known ? known : prefix->rom, sizeof(path));

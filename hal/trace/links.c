@@ -131,6 +131,8 @@ static int told_search(struct link *link, bool alarm, uint8_t family, link_found
 
 	fprintf(ask(link), "search %s %02X", alarm ? "alarm" : "all", family);
 	lines->form = TRACE_IDS;
+	if (TOLD(link)->under)
+		TOLD(link)->under->whole = link->whole;
 	err = UNDER(link, ops, search, alarm, family, note_found, &all);
 	all.n = TOLD(link)->under ? all.n : sizeof(all.rom);
 	err = trace_told(lines, 0, err, all.rom, &all.n);

@@ -17,6 +17,7 @@ void native_begin(void)
 {
 	host_init_virtual(&host);
 	next_id = 0;
+	list_whole = false;
 }
 
 void native_end(void)
@@ -39,6 +40,7 @@ void start(void)
 }
 
 uint32_t write_offset, write_nuls;
+bool list_whole;
 
 uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what, const char *text)
 {
@@ -49,6 +51,7 @@ uint32_t ask(enum bus_op op, enum bus_prio prio, bool fresh, const char *what, c
 	                           .op = (uint8_t)op,
 	                           .prio = (uint8_t)prio,
 	                           .fresh = fresh,
+	                           .whole = list_whole,
 	                           .path = path[id],
 	                           .data = data[id],
 	                           .len = sizeof(data[id]),

@@ -18,6 +18,8 @@ extern uint8_t data[NATIVE_REQUESTS][4096];
 extern uint32_t write_offset;
 /* So many NULs stand behind the text of a write. */
 extern uint32_t write_nuls;
+/* Each id of a list is read whole. */
+extern bool list_whole;
 
 /* setUp() and tearDown() */
 void native_begin(void);

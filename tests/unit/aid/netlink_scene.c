@@ -20,6 +20,7 @@ void nl_begin(void)
 {
 	host_init_virtual(&nl.host);
 	next_id = 0;
+	nl.whole = false;
 	snprintf(root, sizeof(root), "/tmp/owsd-netlink-XXXXXX");
 	TEST_ASSERT_NOT_NULL(mkdtemp(root));
 }
@@ -94,6 +95,7 @@ const struct bus_answer *nl_ask(enum bus_op op, const char *path, const char *va
 	                       .op = (uint8_t)op,
 	                       .prio = BUS_INPUT,
 	                       .fresh = true,
+	                       .whole = nl.whole,
 	                       .path = path,
 	                       .data = nl.data,
 	                       .len = (uint32_t)n,

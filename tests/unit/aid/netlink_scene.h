@@ -11,6 +11,7 @@ struct netlink_scene {
 	struct host host;
 	struct bus *bus;
 	uint8_t data[NETLINK_ROOM]; /* of the last answer, with NUL */
+	bool whole;                 /* each id of a list is read whole */
 };
 extern struct netlink_scene nl;
 

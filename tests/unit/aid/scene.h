@@ -128,7 +128,7 @@ struct scene {
 	char trace[16384]; /* "R /path\n" (r: fresh), "W /path=text\n"; "1: " before bus 1's */
 	bool no_trace;
 	unsigned reads, writes, lists;
-	bool trace_lists; /* the trace has "D /alarm" too */
+	bool trace_lists; /* the trace has "D /alarm" too; "d /alarm": with each id whole */
 	/* called at a read or write, for what else happens to the devices; may use scene_put() */
 	void (*on_write)(struct scene *scene, const char *path, const char *data, uint32_t len);
 	void (*on_read)(struct scene *scene, const char *path);

@@ -43,7 +43,7 @@ int scene_submit(void *ctx, struct bus_req *req)
 		s->lists++;
 		bus->lists++;
 		if (s->trace_lists)
-			note(bus, 'D', req->path, text);
+			note(bus, req->whole ? 'd' : 'D', req->path, text);
 	} else if (req->op == BUS_WRITE) {
 		s->writes++;
 		bus->writes++;

@@ -235,9 +235,23 @@ static void test_what_is_known_without_the_device_does_not_show_it(void)
 		TEST_ASSERT_FALSE_MESSAGE(facts_shows_device(no[i]), no[i]);
 }
 
+static void test_a_latch_tells_of_the_alarm_of_switches_and_of_no_thermometer(void)
+{
+	static const char *const yes[] = {"/29.B89115000000", "/12.B89115000000/sensed.A",
+	                                  "/bus.1/20.B89115000000", "/boiler"};
+	static const char *const no[] = {"/28.551DDF030000/temperature", "/05.551DDF030000",
+	                                 "/1F.112233445566/main/10.551DDF030000"};
+
+	for (size_t i = 0; i < sizeof(yes) / sizeof(yes[0]); i++)
+		TEST_ASSERT_TRUE_MESSAGE(facts_latches(yes[i]), yes[i]);
+	for (size_t i = 0; i < sizeof(no) / sizeof(no[0]); i++)
+		TEST_ASSERT_FALSE_MESSAGE(facts_latches(no[i]), no[i]);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
+	RUN_TEST(test_a_latch_tells_of_the_alarm_of_switches_and_of_no_thermometer);
 	RUN_TEST(test_what_is_known_without_the_device_does_not_show_it);
 	RUN_TEST(test_thermometers_that_can_starve_are_known_in_every_spelling);
 	RUN_TEST(test_the_range_is_the_chips_own);

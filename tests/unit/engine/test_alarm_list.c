@@ -107,6 +107,20 @@ static void test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only
 	TEST_ASSERT_NULL(strstr(s.trace, "D /alarm\n"));
 }
 
+/* No latch tells there of a switch whose id was guessed; a thermometer has none to guess by. */
+static void test_ids_are_read_whole_where_the_list_alone_tells_of_a_switch(void)
+{
+	s.bus[0].searches = s.trace_lists = true;
+	alarm_item(&s, "level", E "/sensed.BYTE", "present", "", NULL, "");
+	alarm_item(&s, "t", T_TEMP, "present", "", "temphigh=30", "")->type = OWS_DOUBLE;
+	alarm_device(&s, "0", "0");
+	scene_start(&s);
+	scene_up(&s);
+	scene_run(&s, 200 * SCENE_MS);
+	TEST_ASSERT_NOT_NULL(strstr(s.trace, "d /alarm/29,28\n"));
+	TEST_ASSERT_NULL(strstr(s.trace, "D /alarm"));
+}
+
 static void test_a_list_that_fails_is_asked_for_ever_more_rarely(void)
 {
 	figure_3_3(&s);
@@ -187,6 +201,7 @@ int main(void)
 	RUN_TEST(test_a_bus_without_alarm_search_is_asked_again_when_it_comes_back);
 	RUN_TEST(test_an_alarm_stands_no_more_where_no_look_can_tell_its_return);
 	RUN_TEST(test_a_bus_that_searches_is_asked_for_the_families_of_the_items_only);
+	RUN_TEST(test_ids_are_read_whole_where_the_list_alone_tells_of_a_switch);
 	RUN_TEST(test_a_list_that_fails_is_asked_for_ever_more_rarely);
 	RUN_TEST(test_a_list_that_finds_the_wire_short_has_its_items_read_at_once);
 	RUN_TEST(test_a_list_that_comes_after_the_target_was_given_up_counts_for_nothing);

@@ -109,6 +109,23 @@ static void test_one_that_is_new_is_in_alarm_itself(void)
 	expect_alarms("/alarm/28", list);
 }
 
+/* Of a switch the latch tells, unless the list has to. */
+static void test_no_switch_is_listed_for_a_new_one_where_its_id_is_read_whole(void)
+{
+	char list[80];
+
+	wire_init(&host, 1, 1);
+	struct sim_slave *calm = wire_add(0, "DS2408", 1);
+
+	start();
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(calm, "por"), "0"));
+	TEST_ASSERT_EQUAL_INT(0, result(BUS_WRITE, of(calm, "latch.BYTE"), "0"));
+	struct sim_slave *new = wire_add(0, "DS2408", 2);
+	snprintf(list, sizeof(list), "/alarm%s\n", name_of(new));
+	list_whole = true;
+	expect_alarms("/alarm/29", list);
+}
+
 /* Each slot of a search that nobody answers. */
 static void test_no_turned_slot_makes_an_alarm(void)
 {
@@ -245,6 +262,7 @@ int main(void)
 	RUN_TEST(test_alarms_list_the_devices_in_alarm);
 	RUN_TEST(test_no_thermometer_is_in_alarm_for_another_chip);
 	RUN_TEST(test_one_that_is_new_is_in_alarm_itself);
+	RUN_TEST(test_no_switch_is_listed_for_a_new_one_where_its_id_is_read_whole);
 	RUN_TEST(test_no_turned_slot_makes_an_alarm);
 	RUN_TEST(test_an_alarm_search_goes_no_further_than_its_family);
 	RUN_TEST(test_an_alarm_s_next_request_is_waited_for);

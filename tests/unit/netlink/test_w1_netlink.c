@@ -353,6 +353,23 @@ static void test_no_thermometer_is_in_alarm_for_one_that_is_new(void)
 	}
 }
 
+/* Of a switch the latch tells, unless the list has to. */
+static void test_no_switch_is_listed_for_a_new_one_where_its_id_is_read_whole(void)
+{
+	char list[100], name[ROM_TEXT_MAX];
+
+	nl_masters(1);
+	struct sim_slave *old = wire_add(0, "DS2408", 1);
+	nl_start();
+	TEST_ASSERT_EQUAL_INT(0, nl_write(old, "por", "0"));
+	TEST_ASSERT_EQUAL_INT(0, nl_write(old, "latch.BYTE", "0"));
+	struct sim_slave *new = wire_add(0, "DS2408", 0x201);
+	rom_print(new->rom, ROM_F_I, name);
+	snprintf(list, sizeof(list), "/alarm/%s\n", name);
+	nl.whole = true;
+	list_alarms("/alarm/29", list);
+}
+
 /* One turned slot neither makes an alarm nor ends one. */
 static void test_no_turned_slot_changes_who_is_in_alarm(void)
 {
@@ -399,6 +416,7 @@ int main(void)
 	RUN_TEST(test_random_alarms_are_all_found);
 	RUN_TEST(test_an_unknown_device_in_alarm_is_found_and_read);
 	RUN_TEST(test_no_thermometer_is_in_alarm_for_one_that_is_new);
+	RUN_TEST(test_no_switch_is_listed_for_a_new_one_where_its_id_is_read_whole);
 	RUN_TEST(test_no_turned_slot_changes_who_is_in_alarm);
 	return UNITY_END();
 }

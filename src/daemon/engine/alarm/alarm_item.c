@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hal/chips/facts.h"
 #include "hal/owfs/path.h"
 #include "src/daemon/engine/alarm/alarm_item.h"
 
@@ -101,15 +102,28 @@ static void add_family(struct alarm_machine *m, const struct table *table, uint3
 	m->family_count++;
 }
 
+/*
+ * Of a device with a latch a bus may read a part of the id, and guess the rest: which is right by
+ * the latch. Here nobody looks at that.
+ */
+static bool wants_whole(const struct alarm_strings *strings)
+{
+	return strings->latch && strcmp(strings->latch, "present") == 0 &&
+	       facts_latches(strings->path);
+}
+
 /* A thermometer with its factory limits is always in alarm: the search need not go there. */
 void alarm_name_list(struct alarm_machine *m, const struct table *table)
 {
 	size_t used = (size_t)snprintf(m->list_path, sizeof(m->list_path), "/alarm");
 
 	m->named = true;
+	m->whole = false;
 	m->family_count = 0;
-	for (uint32_t k = 0; k < m->count; k++)
+	for (uint32_t k = 0; k < m->count; k++) {
 		add_family(m, table, m->items[k]->device);
+		m->whole |= wants_whole(&m->items[k]->strings);
+	}
 	if (!m->searches || m->family_count > sizeof(m->families))
 		return;
 	for (unsigned i = 0; i < m->family_count; i++)

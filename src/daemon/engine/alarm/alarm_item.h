@@ -109,6 +109,7 @@ struct alarm_machine {
 	uint32_t count;
 	struct alarm_listing list;
 	bool searches;             /* the list can be kept to families */
+	bool whole;                /* to be listed is the alarm of a device that has a latch */
 	int64_t position;          /* iAlarmPos */
 	int64_t init_position;     /* iAlarmInitPos */
 	unsigned in_a_row;         /* nCons */
@@ -143,7 +144,7 @@ void alarm_take_item(struct alarm_machine *m, struct alarm_item *item, int64_t n
  * the next alarm. True: the answer to what the machine asked last is of no interest any more.
  */
 bool alarm_drop_item(struct alarm_machine *m, struct alarm_item *item);
-/* Make list_path of the families of its items. */
+/* Make list_path of the families of its items, and whole. */
 void alarm_name_list(struct alarm_machine *m, const struct table *table);
 
 /* The target was lost: from the beginning when it is back. */

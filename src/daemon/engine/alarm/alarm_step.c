@@ -299,6 +299,7 @@ static bool ask_list(struct alarm_machine *m, const struct lane *lane, struct sl
 		alarm_name_list(m, &lane->engine->table);
 	slot->req.op = BUS_DIR;
 	slot->req.path = m->list_path;
+	slot->req.whole = m->whole;
 	slot->row = TABLE_NO_ROW;
 	return true;
 }
