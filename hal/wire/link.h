@@ -165,8 +165,7 @@ struct link {
 	/* Links with one number share a chip: a call on one ends the strong pull-up of another. */
 	unsigned chip;
 	const struct driver_ops *driver; /* of the kernel's drivers (driver.h); NULL: a wire */
-	/* Of the next search() of alarms: each id is read to its end (bus.h). The caller sets it. */
-	bool whole;
+	bool whole; /* of the next search() of alarms, set by its caller: as bus_req.whole */
 	/*
 	 * Of a link that stands in front of another (coupler.h), which does all but run(): its
 	 * ops are those of that one. NULL: there is none.
