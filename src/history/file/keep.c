@@ -44,6 +44,24 @@ static int delete_gaps(sqlite3 *db, int64_t before)
 	return got < 0 ? got : delete_before(db, "gap", "start", value < before ? value : before);
 }
 
+/* Of the oldest row: sums count from the begin of the row that has them. Else the newest. */
+static const char oldest_run[] =
+	"select max(start) from session where start <= (select min(id) from ("
+	"select min(id) as id from raw union all select min(start) from gap"
+	" union all select min(id) from event"
+	" union all select ((min(id) >> 16) - 59) * 60000000 from minute"
+	" union all select (min(id) >> 19) * 8 * 3600000000 from hour"
+	" union all select max(start) from session))";
+
+/* A run of the recorder says what the ids of rows mean until the next one begins. */
+static int delete_runs(sqlite3 *db)
+{
+	int64_t run = 0;
+	int got = sql_ask(db, oldest_run, &run);
+
+	return got < 0 ? got : delete_before(db, "session", "start", run);
+}
+
 static int64_t oldest_kept(int64_t last_id, uint32_t days)
 {
 	return days ? last_id - days * DAY_US : 0;
@@ -111,5 +129,5 @@ int keep_delete(const struct history_keep *keep, sqlite3 *db, const char *direct
 	if (!err && hours > 0)
 		err = delete_before(db, "hour", "id",
 		                    schema_hour(hours / HOUR_US & ~INT64_C(7), 0));
-	return err;
+	return err ? err : delete_runs(db);
 }

@@ -515,6 +515,28 @@ static void test_a_gap_is_kept_as_long_as_the_journal_and_all_values_before_it(v
 	TEST_ASSERT_GREATER_THAN_INT64(0, past_ask(&past, "select count(*) from gap"));
 }
 
+/* A run each day. */
+static void test_a_run_is_kept_as_long_as_the_oldest_row_that_it_explains(void)
+{
+	past.options.flush_ns = 1800 * PAST_S;
+	past.options.keep = (struct history_keep){.days = 1, .minutes = 2, .hours = 3};
+	for (int day = 0; day < 13; day++) {
+		/* from the tenth day on hours are kept for ever */
+		if (day == 10)
+			past.options.keep.hours = 0;
+		past_begin(&past, day * PAST_DAY, PAST_NOON, true);
+		days(day, day + 1);
+		past_end(&past, (day + 1) * PAST_DAY);
+		if (day == 9)
+			TEST_ASSERT_EQUAL_INT64(4, past_ask(&past, "select count(*) from session"));
+	}
+	TEST_ASSERT_EQUAL_INT64(7, past_ask(&past, "select count(*) from session"));
+	/* each hour has the date of its run */
+	TEST_ASSERT_GREATER_THAN_INT64(5 * 24, past_ask(&past, "select count(*) from hour"));
+	TEST_ASSERT_EQUAL_INT64(past_ask(&past, "select count(*) from hour"),
+	                        past_ask(&past, "select count(*) from trend_hour"));
+}
+
 static void test_a_value_that_was_measured_before_the_last_one_comes_after_it(void)
 {
 	past_begin(&past, 0, PAST_NOON, true);
@@ -1268,6 +1290,7 @@ int main(void)
 	RUN_TEST(test_values_are_kept_for_days_minutes_for_more_and_hours_for_ever);
 	RUN_TEST(test_the_journal_is_kept_as_long_as_minutes);
 	RUN_TEST(test_a_gap_is_kept_as_long_as_the_journal_and_all_values_before_it);
+	RUN_TEST(test_a_run_is_kept_as_long_as_the_oldest_row_that_it_explains);
 	RUN_TEST(test_a_value_that_was_measured_before_the_last_one_comes_after_it);
 	RUN_TEST(test_what_was_measured_before_a_repeated_value_is_not_undone_by_it);
 	RUN_TEST(test_what_is_not_known_is_said_once);
