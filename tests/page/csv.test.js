@@ -40,6 +40,9 @@ test("records come in several answers, and the one that held at the begin has it
 test("all digits are all digits", () => {
 	const past = {x: [1, 2], last: [1234567890123, 0.1234567890123]};
 	assert.match(csvOf([{signal: room, past}], true), /,1234567890123\r\n.*,0\.1234567890123\r/);
+	const large = {x: [1], last: ["-9007199254740993"]};
+	assert.match(csvOf([{signal: {name: "meter", type: "large"}, past: large}], true),
+		/,-9007199254740993\r/);
 });
 
 test("a table that is too long says where it is cut, and its cells are empty from there on", async () => {

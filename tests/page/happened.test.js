@@ -47,6 +47,16 @@ test("what outputs take at a start is one line, and a command is another", () =>
 		"InitValue: 1");
 });
 
+test("a command of 64 bits has all its digits", () => {
+	const large = "9007199254740993";
+	assert.equal(happenings([command("07:00:00", "set", "meter", large)],
+		(name) => ({name, type: "large"}))[0].what, `set ${large}`);
+	const signal = {type: "large", limits: {h: 5}};
+	assert.equal(overWords(signal, "high", "9007199254740992"),
+		`Limit 5, over it by ${2 ** 53 - 5}`);
+	assert.equal(overWords(signal, "high", undefined), "Limit 5");
+});
+
 test("an hour counts what began in it", () => {
 	const all = happenings([alarm("10:00:00", "raised"), alarm("10:59:59", "raised", {name: "b"}),
 		alarm("23:00:00", "raised", {name: "c"})], none);

@@ -177,19 +177,28 @@ const struct ows_by *journal_by(const struct journal_entry *entry)
 	return entry->is_command ? &entry->command.who : &entry->alarm.who;
 }
 
+static void put_digits(struct json *json, const char *key, uint8_t type, const char *text,
+                       bool browser)
+{
+	if (browser && type == OWS_LARGE && text)
+		json_exact(json, key, strtoll(text, NULL, 10));
+	else
+		json_number(json, key, text);
+}
+
 /* What an alarm had before and after it. */
 static void json_number_of(struct json *json, const char *key, const struct ows_alarm *alarm,
-                           bool has, double number, int64_t integer)
+                           bool has, double number, int64_t integer, bool browser)
 {
 	char text[VALUE_TEXT_MAX];
 
 	has &= alarm->type != OWS_STRING;
 	if (has)
 		digits_print((enum ows_type)alarm->type, number, integer, -1, text);
-	json_number(json, key, has ? text : NULL);
+	put_digits(json, key, alarm->type, has ? text : NULL, browser);
 }
 
-static void json_value(struct json *json, const struct journal_entry *entry)
+static void json_value(struct json *json, const struct journal_entry *entry, bool browser)
 {
 	char value[VALUE_TEXT_MAX];
 	const char *text = journal_value(entry, -1, value);
@@ -200,10 +209,11 @@ static void json_value(struct json *json, const struct journal_entry *entry)
 	else if (text && type == OWS_BOOL)
 		json_bool(json, "value", *text == '1');
 	else
-		json_number(json, "value", text);
+		put_digits(json, "value", type, text, browser);
 }
 
-void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry)
+void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry,
+                  bool browser)
 {
 	static const struct ows_by none;
 	const struct ows_alarm *alarm = &entry->alarm;
@@ -224,12 +234,12 @@ void journal_json(struct json *json, const struct when *now, const struct journa
 		json_string(json, "alarm", alarm->kind ? ows_alarm_kind_text(alarm->kind) : NULL);
 		json_string(json, "event", ows_alarm_event_text(alarm->event));
 	}
-	json_value(json, entry);
+	json_value(json, entry, browser);
 	if (!entry->is_command) {
 		json_number_of(json, "before", alarm, alarm->has_before, alarm->before,
-		               alarm->before_integer);
+		               alarm->before_integer, browser);
 		json_number_of(json, "after", alarm, alarm->has_after, alarm->after,
-		               alarm->after_integer);
+		               alarm->after_integer, browser);
 		json_string(json, "quality", ows_quality_text(alarm->quality));
 	}
 	actor_json(json, journal_is_deed(entry) ? journal_by(entry) : &none);

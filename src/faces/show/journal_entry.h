@@ -49,5 +49,6 @@ const char *journal_value(const struct journal_entry *entry, int decimals,
 /* Did a program or a person do it? An alarm is raised, and returns, by itself. */
 bool journal_is_deed(const struct journal_entry *entry);
 const struct ows_by *journal_by(const struct journal_entry *entry);
-/* As an object. */
-void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry);
+/* As an object; for a browser numbers as json_exact() has them. */
+void journal_json(struct json *json, const struct when *now, const struct journal_entry *entry,
+                  bool browser);

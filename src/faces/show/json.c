@@ -11,6 +11,8 @@
 #include "src/ground/signal/utf8.h"
 #include "src/ground/signal/value.h"
 
+#define BROWSER_MOST ((INT64_C(1) << 53) - 1)
+
 void json_open(struct json *json, FILE *out)
 {
 	json->out = out;
@@ -163,6 +165,18 @@ void json_uint(struct json *json, const char *key, uint64_t number)
 {
 	json_begin(json, key);
 	fprintf(json->out, "%" PRIu64, number);
+}
+
+void json_exact(struct json *json, const char *key, int64_t number)
+{
+	char text[VALUE_TEXT_MAX];
+
+	if (number >= -BROWSER_MOST && number <= BROWSER_MOST) {
+		json_int(json, key, number);
+		return;
+	}
+	value_to_text(OWS_LARGE, number, text);
+	json_string(json, key, text);
 }
 
 void json_known(struct json *json, const char *key, int number)

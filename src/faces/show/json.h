@@ -40,6 +40,8 @@ void json_bytes(struct json *json, const char *key, const char *text, size_t len
 void json_text(struct json *json, const char *text, size_t len);
 void json_int(struct json *json, const char *key, int64_t number);
 void json_uint(struct json *json, const char *key, uint64_t number);
+/* For a browser, which has 53 bits for a number: what it would round is a text of its digits. */
+void json_exact(struct json *json, const char *key, int64_t number);
 void json_known(struct json *json, const char *key, int number); /* null below 0 */
 void json_bool(struct json *json, const char *key, bool value);
 void json_null(struct json *json, const char *key);

@@ -265,7 +265,7 @@ void events_alarm(struct web *web, const struct ows_alarm *alarm)
 	json_int(&json, "i", alarm->signal);
 	json_string(&json, "alarm", show_alarm(&show, alarm->signal, words));
 	json_key(&json, "entry");
-	journal_json(&json, &now, &entry);
+	journal_json(&json, &now, &entry, true);
 	json_finish(&json);
 	web->alarms[at].cursor = recent_next(&web->recent, show.now_ns);
 }

@@ -190,9 +190,14 @@ static void run_trend(struct job *job)
 
 static void put_record(struct json *json, const struct ows_history_item *item)
 {
+	bool good = item->known && ows_good(item->quality);
+
 	json_array(json, NULL);
 	json_int(json, NULL, item->time_ns / NS_PER_MS);
-	json_double(json, NULL, item->known && ows_good(item->quality) ? item->number : NAN);
+	if (good && item->type == OWS_LARGE)
+		json_exact(json, NULL, item->integer);
+	else
+		json_double(json, NULL, good ? item->number : NAN);
 	json_int(json, NULL, item->known ? item->quality : 0);
 	json_array_end(json);
 }
@@ -372,7 +377,7 @@ static void put_journal(struct past_job *past, const struct journal_entries *ent
 
 		if (at_ns < past->from_ns || at_ns >= past->until_ns)
 			continue;
-		journal_json(&json, now, &entries->entry[i]);
+		journal_json(&json, now, &entries->entry[i], true);
 		count++;
 	}
 	json_array_end(&json);

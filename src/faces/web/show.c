@@ -17,17 +17,12 @@
 #include "src/faces/web/show.h"
 #include "src/ground/signal/value.h"
 
-/* Beyond it a browser would round. */
-#define NUMBER_MOST ((INT64_C(1) << 53) - 1)
-
 static void put_number(struct json *json, const char *key, struct face_value *look)
 {
-	const char *text = face_value_text(look);
-
-	if (look->v.integer > NUMBER_MOST || look->v.integer < -NUMBER_MOST)
-		json_string(json, key, text);
+	if (look->v.type == OWS_LARGE)
+		json_exact(json, key, look->v.integer);
 	else
-		reading_json_number(json, key, &look->v, text);
+		reading_json_number(json, key, &look->v, face_value_text(look));
 }
 
 static void show_put_value(struct json *json, const char *key, struct face_value *look)

@@ -49,6 +49,19 @@ static void test_members_and_elements_are_separated_by_commas(void)
 	TEST_ASSERT_EQUAL_STRING("{\"a\":1,\"b\":[2,{},[]],\"c\":true}\n", written());
 }
 
+static void test_a_whole_number_for_a_browser_is_a_text_from_2_to_the_53_on(void)
+{
+	json_array(&json, NULL);
+	json_exact(&json, NULL, INT64_C(9007199254740991));
+	json_exact(&json, NULL, INT64_C(9007199254740992));
+	json_exact(&json, NULL, INT64_C(-9007199254740991));
+	json_exact(&json, NULL, INT64_MIN);
+	json_array_end(&json);
+	TEST_ASSERT_EQUAL_STRING("[9007199254740991,\"9007199254740992\",-9007199254740991,"
+	                         "\"-9223372036854775808\"]",
+	                         written());
+}
+
 static void test_documents_follow_each_other_on_lines(void)
 {
 	json_int(&json, NULL, 1);
@@ -228,6 +241,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_members_and_elements_are_separated_by_commas);
+	RUN_TEST(test_a_whole_number_for_a_browser_is_a_text_from_2_to_the_53_on);
 	RUN_TEST(test_documents_follow_each_other_on_lines);
 	RUN_TEST(test_strings_are_escaped);
 	RUN_TEST(test_zero_bytes_are_kept);

@@ -16,6 +16,8 @@ const harmless = (text) => /^[=+@-]/.test(text) ? `'${text}` : text;
 function cell(signal, value, exact) {
 	if (value === null || value === undefined)
 		return "";
+	if (typeof value === "string")
+		return value; // JavaScript would round it
 	return signal.type === "bool" || exact ? String(Number(value)) : valueText(signal, value);
 }
 

@@ -20,9 +20,10 @@ export function overWords(signal, kind, value) {
 	if (limit === null)
 		return "";
 	const text = `Limit ${valueText(signal, limit)}`;
-	if (typeof value !== "number")
+	const number = Number(value ?? NaN);
+	const by = kind.startsWith("high") ? number - limit : limit - number;
+	if (Number.isNaN(by))
 		return text;
-	const by = kind.startsWith("high") ? value - limit : limit - value;
 	const way = kind.startsWith("high") ? "over" : "under";
 	return by > 0 ? `${text}, ${way} it by ${valueText(signal, by)}` : `${text}, within it again`;
 }

@@ -92,7 +92,7 @@ static void journal_print_json(struct journal *j, unsigned from)
 
 	json_list(&json, stdout, !j->follows);
 	for (unsigned i = from; i < j->entries.count; i++) {
-		journal_json(&json, &now, &j->entries.entry[i]);
+		journal_json(&json, &now, &j->entries.entry[i], false);
 		if (j->follows)
 			json_end(&json);
 	}
