@@ -29,6 +29,7 @@ use std::sync::mpsc::{self, TryRecvError};
 use std::time::Duration;
 
 const CYCLE: Duration = Duration::from_millis(20);
+const LOST_NS: i64 = 2_000_000_000; // a welcome that is not here by then never comes
 
 // --- The controller ----------------------------------------------------------------------------------
 
@@ -41,6 +42,7 @@ struct Controller {
     token: [u8; 16],
     memory: Memory,
     newest: Option<Welcome>, // the last that came after the first
+    awaited_ns: i64,         // since when it waits for the one of a reload; 0: it does not
     stamp: u32,
     period_ms: u32,
     looked_ns: i64,
@@ -78,6 +80,7 @@ impl Controller {
                         token: welcome.token,
                         memory,
                         newest: None,
+                        awaited_ns: 0,
                         stamp: 0,
                         period_ms,
                         looked_ns: 0,
@@ -120,21 +123,34 @@ impl Controller {
             }
         }
         // It may be of an image that is not there yet, and is kept for the next try
-        let Some(welcome) = &self.newest else { return Err(error(EAGAIN)) };
-        if (welcome.generation, welcome.start_id) != (image.generation, image.start_id) {
-            return Err(error(EAGAIN));
+        let present = (image.generation, image.start_id);
+        match &self.newest {
+            Some(welcome) if (welcome.generation, welcome.start_id) == present => {
+                self.memory = Memory::new(welcome, &image)?;
+            }
+            _ => return self.wait(),
         }
-        self.memory = Memory::new(welcome, &image)?;
-        (self.image, self.newest) = (image, None);
+        (self.image, self.newest, self.awaited_ns) = (image, None, 0);
         self.promise();
         Ok(false)
+    }
+
+    /// A welcome takes milliseconds. One is lost if owsd-porter is killed that moment.
+    fn wait(&mut self) -> Result<bool> {
+        if self.awaited_ns == 0 {
+            self.awaited_ns = now_ns();
+        }
+        if now_ns() - self.awaited_ns < LOST_NS {
+            return Err(error(EAGAIN));
+        }
+        self.join_again()
     }
 
     fn join_again(&mut self) -> Result<bool> {
         let (image, socket, mut welcome, memory) = join(&self.place, &self.instance, &self.token)?;
         let restarted = image.start_ns != self.image.start_ns;
         (self.image, self.socket, self.memory) = (image, socket, memory);
-        self.newest = None;
+        (self.newest, self.awaited_ns) = (None, 0);
         self.bell = welcome.files.remove(1);
         self.token = welcome.token;
         self.promise();
@@ -194,11 +210,12 @@ impl Controller {
         let Ok(record) = self.image.find(name) else { return "gone".to_string() };
         let slot = self.memory.slot(record);
         let (map, taken) = (&self.memory.map, self.memory.map.load(slot + TAKEN));
-        match (map.load(slot + ERR) as i32, map.load(slot + APPLIED).wrapping_sub(stamp) as i32) {
+        let (applied, last) = (map.load(slot + APPLIED), map.load(slot + STAMP));
+        match map.load(slot + ERR) as i32 {
             _ if taken != stamp => "not taken".to_string(),
-            (err, _) if err != 0 => format!("refused: {}", error(-err)),
-            (_, ahead) if ahead >= 0 => "applied".to_string(),
-            _ => "taken".to_string(),
+            0 if confirms(applied, last, stamp) => "applied".to_string(),
+            0 => "taken".to_string(),
+            err => format!("refused: {}", error(-err)),
         }
     }
 

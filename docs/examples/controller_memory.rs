@@ -118,6 +118,13 @@ pub const APPLIED: u32 = 52;
 pub const ERR: u32 = 56;
 pub const ALLOWED: u32 = 60;
 
+/// Does a slot's `applied` confirm the command `stamp`? One that seems newer than the slot's last
+/// command (0: none since a start of owsd) is older than that by 2^31 commands.
+pub fn confirms(applied: u32, last: u32, stamp: u32) -> bool {
+    let ahead = |of: u32| applied.wrapping_sub(of) as i32;
+    ahead(stamp) >= 0 && (last == 0 || ahead(last) <= 0)
+}
+
 impl Memory {
     pub fn new(welcome: &Welcome, image: &Image) -> Result<Memory> {
         let file = &welcome.files[0];

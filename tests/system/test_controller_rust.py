@@ -11,6 +11,7 @@ import subprocess
 
 import owsdtest
 from owsdtest import raw
+from test_doors import porter_of
 
 EXAMPLES = owsdtest.SOURCE / "docs/examples"
 SWITCH = "/29.A0B1C2000003"
@@ -24,19 +25,22 @@ RELAYS = item("relays", "byte", property="PIO.BYTE", InitValue="3", SafeValue="7
 SENSED = item("sensed", "byte", "input", property="sensed.BYTE")
 
 
-def program(scene):
-    """The program, built by this machine's Rust."""
+def compiled(scene, source, *more):
+    """A program, built by this machine's Rust."""
     rustc = shutil.which("rustc") or shutil.which(os.path.expanduser("~/.cargo/bin/rustc"))
     if not rustc:
         owsdtest.skip("there is no rustc")
     built = scene.path / "controller"
-    done = subprocess.run([rustc, "--edition", "2021", "-D", "warnings", "-o", built,
-                           EXAMPLES / "controller.rs"],
+    done = subprocess.run([rustc, "--edition", "2021", *more, "-o", built, source],
                           capture_output=True, text=True, timeout=300, check=False)
     if "error: toolchain" in done.stderr or "rustup could not" in done.stderr:
         owsdtest.skip("this rustc has no toolchain")
     assert done.returncode == 0, done.stderr
     return built
+
+
+def program(scene):
+    return compiled(scene, EXAMPLES / "controller.rs", "-D", "warnings")
 
 
 class Controller:
@@ -150,6 +154,53 @@ def test_it_goes_on_over_a_reload(scene):
     controller.until("relays=5: applied", after="# reloaded")
     controller.sets("relays=9")
     assert get(scene, daemon) == "9"
+
+
+def test_a_welcome_that_is_lost_is_asked_for_by_another_connection(scene):
+    built, daemon = program(scene), scene.owsd(house(scene))
+    controller = Controller(scene, built, daemon, 20000)
+    controller.sets("relays=5")
+    scene.until(lambda: porter_of(daemon), 10, "the porter")
+    porter = porter_of(daemon)
+    os.kill(porter, signal.SIGSTOP)
+    os.replace(scene.file("newer.rio", house(scene, SENSED, RELAYS)), daemon.config)
+    daemon.signal(signal.SIGHUP)
+    scene.until(lambda: daemon.log().count(f"instance {daemon.name}, ") == 2, 10, daemon.log)
+    scene.until(lambda: "# away" in controller.process.log(), 10, controller.process.log)
+    os.kill(porter, signal.SIGKILL)  # with the welcome in its queue
+    controller.until("relays=5: applied", after="# reloaded")
+    controller.sets("relays=9")
+    assert get(scene, daemon) == "9"
+
+
+CONFIRMS = """
+#![allow(dead_code)]
+#[path = "{0}/controller_calls.rs"]
+mod calls;
+#[path = "{0}/controller_image.rs"]
+mod image;
+#[path = "{0}/controller_memory.rs"]
+mod memory;
+
+fn main() {{
+    for before in [0u32, 5, 0x7fffffff, 0x80000001] {{
+        let (first, second) = (before.wrapping_add(0x80000011), before.wrapping_add(0x80000012));
+        assert!(!memory::confirms(before, first, first));
+        assert!(!memory::confirms(before, second, first));
+        assert!(!memory::confirms(before, second, second));
+        assert!(memory::confirms(first, second, first));
+        assert!(!memory::confirms(first, second, second));
+        assert!(memory::confirms(second, second, first));
+    }}
+    assert!(memory::confirms(7, 0, 7) && !memory::confirms(7, 0, 8)); // carried over a start
+}}
+"""
+
+
+def test_what_was_confirmed_2_to_the_31_commands_ago_confirms_no_new_one(scene):
+    built = compiled(scene, scene.file("confirms.rs", CONFIRMS.format(EXAMPLES)))
+    done = subprocess.run([built], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 if __name__ == "__main__":
