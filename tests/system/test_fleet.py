@@ -169,6 +169,44 @@ def test_a_reload_that_was_refused_fails_in_each_run_until_it_is_taken(scene):
         machine.close()
 
 
+def test_a_program_that_goes_on_as_before_fails_a_run_and_is_asked_again_in_the_next(scene):
+    owsdtest.need(BUILD / "owsd-recorder")
+    machine = Machine(scene)
+    try:
+        variables = dict(owsd_rio=machine.rio("room"))
+        assert machine.run(**variables)[0] == 0
+        file = scene.file("other.rio", machine.file.read_text())
+        recorder = scene.start([BUILD / "owsd-recorder", "-n", machine.daemon.name, "-c", file, "-d", scene.path / "history"])
+        until(lambda: "recording" in recorder.log(), 20, recorder.log)
+        file.write_text("OwsDrv { Period wrong }\n")
+        assert f"{file}:1:17" in scene.owsctl(machine.daemon, "reload").stdout
+        status, text, _ = machine.run(**variables)
+        assert status != 0 and f"{file}:1:17" in text, text
+        # the file on the machine stays as it is: it is the program that was not asked
+        file.write_text(machine.file.read_text())
+        status, text, changed = machine.run(**variables)
+        assert status == 0 and changed, text
+        status, text, changed = machine.run(**variables)
+        assert (status, changed) == (0, 0), text
+    finally:
+        machine.close()
+
+
+def test_a_program_whose_user_has_another_group_is_started_again(scene):
+    machine = Machine(scene)
+    try:
+        with open("/etc/passwd", "a", encoding="ascii") as users:
+            users.write("owsd-mqtt:x:64990:64990::/:/bin/false\n")
+        variables = dict(owsd_controllers=["owsd-mqtt", "stranger"])
+        for again in (True, False):
+            status, text, _ = machine.run(**variables)
+            _, found, rest = text.partition("HANDLER [owsd : Restart the programs whose users have other groups]")
+            assert status == 0 and bool(found) == again, text
+            assert not again or rest.count("(item=owsd-") == rest.count("(item=owsd-mqtt)") == 1, text
+    finally:
+        machine.close()
+
+
 def test_the_role_names_packages_and_units_that_there_are(_scene):
     packages = set(re.findall(r"^Package: (\S+)$", (SOURCE / "board/debian/control").read_text(), re.M))
     defaults = (FLEET / "ansible/roles/owsd/defaults/main.yml").read_text()
