@@ -215,6 +215,15 @@ def test_enable_shows_each_command_and_the_address_of_the_page(scene):
                          f"systemctl restart owsd-mqtt@{name}.service\n"), asked
 
 
+def with_etc(daemon, etc, verb, program):
+    """What owsctl would run on a machine with that /etc."""
+    done = subprocess.run(["unshare", "-m", "sh", "-c", 'mount --bind "$0" /etc && exec "$@"', etc, owsdtest.OWSCTL,
+                           "-n", daemon.name, verb, "--dry-run", program],
+                          capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
+    assert done.returncode == 0, done
+    return done.stdout
+
+
 def test_a_group_that_no_file_asks_for_any_more_is_taken_back(scene):
     if os.geteuid() != 0:
         owsdtest.skip("only root may have another /etc")
@@ -229,11 +238,7 @@ def test_a_group_that_no_file_asks_for_any_more_is_taken_back(scene):
     (etc / "group").write_text("owsd-control:x:990:anna,owsd-web\nowsd-config:x:991:owsd-web\nowsd-mqtt:x:992:\n")
 
     def taken(verb, program):
-        done = subprocess.run(["unshare", "-m", "sh", "-c", 'mount --bind "$0" /etc && exec "$@"', etc, owsdtest.OWSCTL,
-                               "-n", daemon.name, verb, "--dry-run", program],
-                              capture_output=True, text=True, timeout=owsdtest.PATIENCE, check=False)
-        assert done.returncode == 0, done
-        return re.findall(r"\+ gpasswd -d owsd-(?:web|writer) owsd-(.*)", done.stdout)
+        return re.findall(r"\+ gpasswd -d owsd-(?:web|writer) owsd-(.*)", with_etc(daemon, etc, verb, program))
     assert taken("enable", "web") == ["control"]
     assert taken("disable", "web") == ["control", "config"]
     assert not taken("enable", "mqtt")
@@ -246,6 +251,37 @@ def test_a_group_that_no_file_asks_for_any_more_is_taken_back(scene):
     assert taken("disable", "web") == ["control", "config"]
     other.write_text("OwsDrv {")
     assert not taken("disable", "web")
+
+
+def test_the_writer_goes_with_the_last_program_that_asks_it(scene):
+    if os.geteuid() != 0:
+        owsdtest.skip("only root may have another /etc")
+    plant = scene.file("plant.sim", BUSES + CHIPS)
+    blocks = '  Web { Configure on }\n  Mqtt { Broker "mqtt://127.0.0.1:1" Rename on }\n'
+    daemon = scene.owsd(owsdtest.rio(f"sim:{plant}", [LIVING]).replace("  Item", blocks + "  Item", 1), name=scene.name())
+    etc = scene.path / "etc"
+    wants = etc / "systemd/system/any.target.wants"
+    wants.mkdir(parents=True)
+    units = {word: wants / f"owsd-{word}@{daemon.name}.{kind}"
+             for word, kind in (("writer", "socket"), ("web", "socket"), ("mqtt", "service"))}
+    for unit in units.values():
+        unit.touch()
+
+    def goes(verb, program, *members):
+        (etc / "group").write_text(f"owsd-config:x:991:{','.join(('owsd', 'owsd-writer', 'owsd-web', *members))}\n")
+        return f"+ systemctl disable --now {units['writer'].name}\n" in with_etc(daemon, etc, verb, program)
+    assert not goes("disable", "web"), "owsd-mqtt asks it"
+    assert not goes("disable", "mqtt"), "owsd-web asks it"
+    units["mqtt"].unlink()
+    assert goes("disable", "web")
+    assert not goes("disable", "web", "anna"), "anna may ask it"
+    assert not goes("disable", "modbus"), "which cannot ask it"
+    assert not goes("enable", "web")
+    # the keys that ask it are off by now
+    daemon.config.write_text(daemon.config.read_text().replace(" on }", " off }"))
+    assert goes("enable", "web")
+    units["writer"].unlink()
+    assert not goes("disable", "web"), "it is disabled already"
 
 
 def test_what_is_safe_is_run_by_fix_and_shown(scene):

@@ -22,6 +22,8 @@
 
 struct change {
 	const struct ctl *ctl;
+	const struct face_row *rows;
+	int count;
 	const struct face_row *row;
 	char file[INSTANCE_FIELD];
 	struct config *config; /* of the instance; NULL: the program is switched off */
@@ -96,6 +98,68 @@ static void take_rights(struct change *change)
 	}
 }
 
+/* Is there a program of the instance that is switched on, and has the key? */
+static bool one_asks(const struct change *change, const struct config *config, const char *key)
+{
+	char unit[FACE_UNIT];
+
+	for (int i = 0; i < change->count; i++) {
+		const struct face_row *row = &change->rows[i];
+
+		face_unit(row, change->ctl->instance, row->socket ? "socket" : "service", unit);
+		if ((row == change->row ? change->config != NULL : face_starts("", unit)) &&
+		    face_has(config, row->program, key))
+			return true;
+	}
+	return false;
+}
+
+/* Does a program ask the helper, or may a person of the group? */
+static bool helper_is_asked(const struct change *change, const struct config *config,
+                            const char *helper)
+{
+	bool asked = false;
+
+	for (unsigned i = 0; i < FACE_RIGHTS; i++) {
+		const struct face_right *right = &face_rights[i];
+
+		if (right->helper && !strcmp(right->helper, helper))
+			asked |= seen_in_group("", NULL, right->group) ||
+			         one_asks(change, config, right->key);
+	}
+	return asked;
+}
+
+/* It goes with the last program that asks it. By a file with errors one may. */
+static void take_helper(struct change *change, const char *helper)
+{
+	struct config_report report = {0};
+	struct config *config = NULL;
+	char unit[FACE_UNIT];
+
+	snprintf(unit, sizeof(unit), "%s@%.200s.socket", helper, change->ctl->instance);
+	if (face_starts("", unit) && !config_load(change->file, &report, &config) &&
+	    !helper_is_asked(change, config, helper))
+		run(change, "systemctl", "disable", "--now", unit, NULL);
+	config_free(config);
+}
+
+/* Of the helpers that the program may ask. */
+static void take_helpers(struct change *change)
+{
+	const char *taken = "";
+
+	for (unsigned i = 0; i < FACE_RIGHTS; i++) {
+		const struct face_right *right = &face_rights[i];
+
+		if (!right->helper || !strcmp(right->helper, taken) ||
+		    !face_may(change->row->program, right->key))
+			continue;
+		take_helper(change, right->helper);
+		taken = right->helper;
+	}
+}
+
 static void switch_on(struct change *change)
 {
 	/* systemd knows no address of the file, so the program itself has to run for them */
@@ -104,6 +168,7 @@ static void switch_on(struct change *change)
 
 	give_rights(change);
 	take_rights(change);
+	take_helpers(change);
 	if (change->row->socket)
 		run(change, "systemctl", "enable", "--now", change->socket, NULL);
 	if (serves)
@@ -157,6 +222,8 @@ static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
 		return ctl_fail("the table of the programs beside owsd: %s", strerror(-count));
 	if (optind != argc - 1)
 		return ctl_usage(ctl, "%s which one?", ctl->verb->name);
+	change.rows = rows;
+	change.count = count;
 	change.row = faces_find(rows, count, argv[optind]);
 	if (!change.row)
 		return no_face(ctl, argv[optind], rows, count);
@@ -175,6 +242,7 @@ static int change_faces(struct ctl *ctl, int argc, char **argv, bool on)
 		run(&change, "systemctl", "disable", "--now", change.service,
 		    change.row->socket ? change.socket : NULL);
 		take_rights(&change);
+		take_helpers(&change);
 		return change.err ? CTL_FAILED : CTL_DONE;
 	}
 	/* a program does not start with a file that it refuses; the reason is printed */

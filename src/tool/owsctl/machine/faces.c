@@ -142,6 +142,19 @@ bool face_is_installed(const char *root, const struct face_row *row)
 	return any;
 }
 
+/* A link makes it start. */
+bool face_starts(const char *root, const char *unit)
+{
+	char pattern[FACE_UNIT + 40];
+	glob_t found;
+	bool any;
+
+	snprintf(pattern, sizeof(pattern), "systemd/system/*.wants/%s", unit);
+	any = faces_files(root, pattern, &found) > 0;
+	globfree(&found);
+	return any;
+}
+
 void face_addresses(const struct config *config, char *text, size_t size)
 {
 	const struct config_web *web = &config->web;

@@ -44,5 +44,7 @@ const char *face_unit(const struct face_row *row, const char *instance, const ch
 size_t faces_files(const char *root, const char *pattern, glob_t *found);
 /* Has the machine below the root the units of the face? */
 bool face_is_installed(const char *root, const struct face_row *row);
+/* Does the unit start with the machine below the root? */
+bool face_starts(const char *root, const char *unit);
 /* The addresses of its page, "http://127.0.0.1:8080/", with blanks between; "" none. */
 void face_addresses(const struct config *config, char *text, size_t size);

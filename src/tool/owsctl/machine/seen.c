@@ -35,6 +35,12 @@ bool seen_output(struct doctor *d, const char *name, const char *const words[])
 	return in != NULL;
 }
 
+/* All users of owsd begin so. */
+static bool is_person(const char *user)
+{
+	return strcmp(user, "owsd") != 0 && strncmp(user, "owsd-", 5) != 0;
+}
+
 bool seen_in_group(const char *root, const char *user, const char *group)
 {
 	char path[512];
@@ -47,7 +53,7 @@ bool seen_in_group(const char *root, const char *user, const char *group)
 	while (in && !found && (entry = fgetgrent(in)))
 		for (char **member = entry->gr_mem; !strcmp(entry->gr_name, group) && *member;
 		     member++)
-			found |= !strcmp(*member, user);
+			found |= user ? !strcmp(*member, user) : is_person(*member);
 	if (in)
 		fclose(in);
 	return found;

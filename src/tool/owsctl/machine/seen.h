@@ -57,5 +57,8 @@ bool seen_automatic(const struct doctor *d);
  * that somebody has disabled is none of the ways of auto.
  */
 bool seen_owserver_stopped(const struct doctor *d, const char *target);
-/* Is the user a member of the group, by etc/group below the root? */
+/*
+ * Is the user a member of the group, by etc/group below the root? NULL: is anybody who is none of
+ * the users of owsd and its programs?
+ */
 bool seen_in_group(const char *root, const char *user, const char *group);

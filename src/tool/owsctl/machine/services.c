@@ -52,11 +52,11 @@ void check_services(struct doctor *d)
 			/* all of them refuse a wrong file, which is reported already */
 			if (!d->errors)
 				report_failure(d, unit);
-		} else if (!strcmp(unit->active, "inactive") && unit_is_enabled(d, unit->id)) {
+		} else if (!strcmp(unit->active, "inactive") && face_starts(d->root, unit->id)) {
 			report_add(&d->found, BOARD_MISSING, "%s is enabled, and does not run",
 			           unit->id);
 			report_command(&d->found, "sudo systemctl start %s", unit->id);
-		} else if (own && unit_is_active(unit) && !unit_is_enabled(d, unit->id)) {
+		} else if (own && unit_is_active(unit) && !face_starts(d->root, unit->id)) {
 			report_add(&d->found, BOARD_NOTE, "%s does not start with the machine",
 			           unit->id);
 			report_command(&d->found, "sudo systemctl enable %s", unit->id);
@@ -207,7 +207,7 @@ void check_owsd(struct doctor *d)
 	}
 	/* a service that fails is reported; of one of another machine there is no process */
 	if (d->err == -EACCES || (unit && (*d->root || !unit_is_active(unit)) &&
-	                          (unit_is_active(unit) || unit_is_enabled(d, unit->id))))
+	                          (unit_is_active(unit) || face_starts(d->root, unit->id))))
 		return;
 	report_add(&d->found, BOARD_MISSING, "owsd %s does not run: %s", d->instance,
 	           d->err && d->err != -ENOENT ? strerror(-d->err) : "it has no heartbeat");
@@ -270,7 +270,7 @@ static void check_face(struct doctor *d, const struct face_row *row)
 	char id[FACE_UNIT];
 
 	face_unit(row, d->instance, row->socket ? "socket" : "service", id);
-	if (!there || !(unit_is_active(units_find(d, id)) || unit_is_enabled(d, id))) {
+	if (!there || !(unit_is_active(units_find(d, id)) || face_starts(d->root, id))) {
 		if (!face_has_block(d->config, row->program))
 			return;
 		report_add(&d->found, BOARD_NOTE, "%s has a block for %s, which is %s", d->file,

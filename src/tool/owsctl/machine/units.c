@@ -68,16 +68,3 @@ const char *units_load_command(const struct doctor *d, char text[UNITS_COMMAND])
 		         shell_word(d->file, word));
 	return text;
 }
-
-/* A link makes it start with the machine. */
-bool unit_is_enabled(const struct doctor *d, const char *id)
-{
-	char pattern[FACE_UNIT + 40];
-	glob_t found;
-	bool any;
-
-	snprintf(pattern, sizeof(pattern), "systemd/system/*.wants/%s", id);
-	any = faces_files(d->root, pattern, &found) > 0;
-	globfree(&found);
-	return any;
-}

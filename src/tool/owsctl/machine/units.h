@@ -18,5 +18,3 @@ bool unit_is_active(const struct unit *unit);
 /* The command that has the configuration loaded as owsd is now: it works. Returns text. */
 #define UNITS_COMMAND 1000
 const char *units_load_command(const struct doctor *d, char text[UNITS_COMMAND]);
-/* Does it start with the machine? */
-bool unit_is_enabled(const struct doctor *d, const char *id);
