@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Answers that need no bus: inputs of the table, and what clients read lately. */
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -130,6 +131,33 @@ int kept_changes(const struct kept *kept, const char *path)
 	for (uint32_t i = 0; i < kept->output_count; i++)
 		if (shared_overlap(&kept->outputs[i].bits, &bits))
 			return (int)kept->outputs[i].record;
+	return -1;
+}
+
+int kept_by_alias(const struct kept *kept, int from, const uint8_t rom[ROM_LEN],
+                  const char *property, struct node *output)
+{
+	char id[ROM_TEXT_MAX], path[ROM_TEXT_MAX + NODE_PATH_MAX];
+	char other[ROM_TEXT_MAX + NODE_PATH_MAX];
+	struct shared_bits bits, of;
+	bool shares;
+
+	rom_print(rom, ROM_F_I, id);
+	snprintf(path, sizeof(path), "/%s%s", id, property);
+	shares = shared_bits(path, &bits);
+	for (int record = from; record <= (int)kept->config->item_count; record++) {
+		const struct config_item *item = &kept->config->items[record - 1];
+
+		if (!item->output || item->device)
+			continue;
+		node_parse(item->path, strlen(item->path), output);
+		if (output->kind != NODE_TARGET || !output->has_device || output->has_rom)
+			continue;
+		snprintf(other, sizeof(other), "/%s%s", id, output->path + output->device_len);
+		if (!strcmp(other, path) ||
+		    (shares && shared_bits(other, &of) && shared_overlap(&of, &bits)))
+			return record;
+	}
 	return -1;
 }
 

@@ -35,3 +35,10 @@ int kept_signal(const struct kept *kept, const char *path, bool output);
 bool kept_has_outputs(const struct kept *kept);
 /* The record of the first output that a write of this path would change, too; -1: there is none. */
 int kept_changes(const struct kept *kept, const char *path);
+/*
+ * The first record from that one on of an output that has its device by an alias, and that a write
+ * of the property ("/PIO.0") of a device would change if the alias is that of the device; its path
+ * in *output. -1: there is none.
+ */
+int kept_by_alias(const struct kept *kept, int from, const uint8_t rom[ROM_LEN],
+                  const char *property, struct node *output);

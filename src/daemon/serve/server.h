@@ -61,6 +61,7 @@ enum client_step {
 	STEP_REFUSE,    /* is there a directory at all, of those that cannot be read or written? */
 	STEP_ADDRESS,   /* the address of an alias */
 	STEP_WHOSE,     /* the same, of an alias that is written to */
+	STEP_ALIAS,     /* the same, of an alias of the table */
 	STEP_FAMILY,    /* the family of an alias */
 	STEP_STRUCTURE, /* the type of a property that the server does not know */
 };
@@ -91,6 +92,8 @@ struct client {
 	size_t past;               /* bytes of an answered request that a bus still uses */
 	struct request request;
 	struct node node;
+	uint8_t whose[ROM_LEN]; /* WRITE: the device, also where the node has its alias */
+	int output;             /* WRITE: the record whose alias is asked for */
 	char path[NODE_PATH_MAX + 16]; /* the path that the engine gets */
 	struct engine_guest guest;
 	struct tokens passed; /* go with the request to a target */

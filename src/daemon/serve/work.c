@@ -302,6 +302,9 @@ void work_answered(struct serve *s, struct client *c)
 	case STEP_WHOSE:
 		work_write_named(s, c, err);
 		return;
+	case STEP_ALIAS:
+		work_write_by_id(s, c, err);
+		return;
 	case STEP_DIR:
 	case STEP_BUSES:
 		if (work_listed(s, c, err))

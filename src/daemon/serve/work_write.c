@@ -135,26 +135,28 @@ static void work_write_refuse(struct serve *s, struct client *c)
 	answer_error(s, c, -EROFS);
 }
 
-/*
- * Would the write change an output of the table by another property, as PIO.BYTE does PIO.1? owsd
- * would undo it at once.
- */
-static bool changes_output(struct serve *s, struct client *c)
+/* The write would change an output of the table, which owsd would undo at once. */
+static void refuse_beside(struct serve *s, struct client *c, int record)
 {
 	char reason[PATH_LEN_MAX + OWS_NAME + 256], person[OWS_NAME];
-	int record = kept_changes(s->kept, c->node.path);
-	const struct config_item *item;
+	const struct config_item *item = &s->config->items[record - 1];
 
-	if (record < 0)
-		return false;
-	item = &s->config->items[record - 1];
 	person_name(c->fd, c->network, &c->peer, person);
 	snprintf(reason, sizeof(reason),
 	         "a write of %s to what the output %s (%s) sets: command that output", person,
 	         item->name, item->path);
 	client_refused(s, COUNT_refused_writes, &s->error_rate, reason);
 	answer_error(s, c, -EROFS);
-	return true;
+}
+
+/* By another property, as PIO.BYTE does PIO.1. */
+static bool changes_output(struct serve *s, struct client *c)
+{
+	int record = kept_changes(s->kept, c->node.path);
+
+	if (record > 0)
+		refuse_beside(s, c, record);
+	return record > 0;
 }
 
 /* An alias may name the device of an output: its target knows. False: there is nothing to ask. */
@@ -165,6 +167,50 @@ static bool ask_whose(struct serve *s, struct client *c)
 	work_ask(s, c, STEP_WHOSE, BUS_READ, work_device_path(s, c, "/address"), client_room(c),
 	         64);
 	return true;
+}
+
+/*
+ * The device of an output may have an alias in the table: its target knows whether that is the
+ * device that is written to. False: there is nothing to ask.
+ */
+static bool ask_aliases(struct serve *s, struct client *c)
+{
+	char asked[sizeof(c->path)];
+	struct node of;
+
+	while (c->node.has_device) {
+		char bus[24] = "";
+
+		c->output = kept_by_alias(s->kept, c->output + 1, c->whose,
+		                          c->node.path + c->node.device_len, &of);
+		if (c->output < 0)
+			return false;
+		memcpy(asked, c->path, sizeof(asked));
+		if (of.bus >= 0)
+			snprintf(bus, sizeof(bus), "/bus.%d", of.bus);
+		snprintf(c->path, sizeof(c->path), "%s%.*s/address", bus, of.device_len, of.path);
+		if (!strcmp(asked, c->path))
+			continue; /* it is another device */
+		work_ask(s, c, STEP_ALIAS, BUS_READ, GUEST_ANY_LANE, client_room(c), 64);
+		return true;
+	}
+	return false;
+}
+
+/* No output of the table has the path. */
+static void write_beside(struct serve *s, struct client *c)
+{
+	if (!ask_aliases(s, c) && !work_ask_type(s, c))
+		work_write_target(s, c);
+}
+
+static void write_device(struct serve *s, struct client *c)
+{
+	c->output = 0;
+	c->path[0] = '\0';
+	memcpy(c->whose, c->node.rom, sizeof(c->whose));
+	if (!ask_whose(s, c))
+		write_beside(s, c);
 }
 
 void work_write(struct serve *s, struct client *c)
@@ -195,32 +241,69 @@ void work_write(struct serve *s, struct client *c)
 			answer_error(s, c, -EINVAL);
 		else if (name)
 			work_write_command(s, c);
-		else if (!changes_output(s, c) && !ask_whose(s, c) && !work_ask_type(s, c))
-			work_write_target(s, c);
+		else if (!changes_output(s, c))
+			write_device(s, c);
 	}
 }
 
 void work_write_named(struct serve *s, struct client *c, int err)
 {
 	char id[ROM_TEXT_MAX], path[NODE_PATH_MAX + ROM_TEXT_MAX];
-	uint8_t rom[ROM_LEN];
 	int bus = c->node.bus;
 
-	if (!err && rom_parse((const char *)client_room(c), c->guest.answer.len, rom))
+	if (!err && rom_parse((const char *)client_room(c), c->guest.answer.len, c->whose))
 		err = -EIO;
 	if (err) {
 		answer_error(s, c, err);
 		return;
 	}
-	rom_print(rom, ROM_F_I, id);
+	rom_print(c->whose, ROM_F_I, id);
 	snprintf(path, sizeof(path), "/%s%s", id, c->node.path + c->node.device_len);
 	if (kept_signal(s->kept, path, true) >= 0 || kept_changes(s->kept, path) >= 0) {
 		node_parse(path, strlen(path), &c->node);
 		c->node.bus = bus;
 		work_write(s, c);
-	} else if (!work_ask_type(s, c)) {
-		work_write_target(s, c);
+	} else {
+		write_beside(s, c);
 	}
+}
+
+/* The alias of an output is found. */
+static void write_output(struct serve *s, struct client *c)
+{
+	const char *path = s->config->items[c->output - 1].path;
+	struct node of;
+
+	node_parse(path, strlen(path), &of);
+	if (c->node.bus >= 0 || of.bus >= 0 ||
+	    strcmp(of.path + of.device_len, c->node.path + c->node.device_len) != 0) {
+		refuse_beside(s, c, c->output);
+		return;
+	}
+	c->node = of;
+	work_write(s, c);
+}
+
+/* No target that can be asked knows the alias. */
+static bool is_nobodys(int err)
+{
+	return err == -ENOENT || err == -ENODEV || err == -ENXIO || err == -ENOTCONN;
+}
+
+void work_write_by_id(struct serve *s, struct client *c, int err)
+{
+	uint8_t rom[ROM_LEN];
+
+	if (!err && rom_parse((const char *)client_room(c), c->guest.answer.len, rom))
+		err = -EIO;
+	if (c->lent || (err && !is_nobodys(err)))
+		answer_error(s, c, err);
+	else if (!work_same_targets(s, c))
+		work_write(s, c); /* the table is another */
+	else if (err || memcmp(rom, c->whose, sizeof(rom)) != 0)
+		write_beside(s, c);
+	else
+		write_output(s, c);
 }
 
 void work_written(struct serve *s, struct client *c, int err)

@@ -9,5 +9,7 @@ void work_write_target(struct serve *s, struct client *c);
 void work_written(struct serve *s, struct client *c, int err);
 /* The engine has said which device an alias names. */
 void work_write_named(struct serve *s, struct client *c, int err);
+/* The same, of an alias of the table. */
+void work_write_by_id(struct serve *s, struct client *c, int err);
 /* Look whether the commands of clients are carried out. */
 void work_look(struct serve *s);

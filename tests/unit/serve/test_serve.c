@@ -648,6 +648,66 @@ static void test_an_alias_of_the_device_of_an_output_is_that_device(void)
 	TEST_ASSERT_NULL(port->take(port->ctx));
 }
 
+static void write_reaches(const char *what)
+{
+	struct engine_guest *g = next_guest();
+
+	TEST_ASSERT_EQUAL_STRING(what, g->path);
+	TEST_ASSERT_EQUAL_INT(BUS_WRITE, g->op);
+	g->answer = (struct bus_answer){.len = 1};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+}
+
+static void alias_fails(int err)
+{
+	struct engine_guest *g = next_guest();
+
+	TEST_ASSERT_EQUAL_STRING("/pump/address", g->path);
+	g->answer = (struct bus_answer){.err = err};
+	port->answered(port->ctx, g);
+}
+
+/* As beside an output that the table has by an id. */
+static void test_the_device_of_an_output_with_an_alias_is_that_output_by_its_id_too(void)
+{
+	static const struct instance_signal aliased[] = {
+		ROOM, {.name = "valve", .path = "/pump/PIO.0", .type = OWS_BOOL, .output = true}, FAN};
+	static const int ports[] = {0};
+
+	instance_reload(&in, aliased, 3);
+	fill(&other_config, other_items, aliased);
+	TEST_ASSERT_EQUAL_INT(0, serve_prepare(serve, &other_config));
+	serve_reload(serve, &other_config, &in.image, ports);
+	show_output(2, 0);
+	show_output(3, 0);
+	command("/29.551DDF030001/PIO.0");
+	give_address("/pump/address", "29551DDF030001");
+	show_output(2, stamp_of(2));
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	command("/29.551DDF030001/PIO.BYTE");
+	give_address("/pump/address", "29551DDF030001");
+	TEST_ASSERT_EQUAL_INT(-30, answer(fd));
+	command("/boiler/PIO.BYTE");
+	give_address("/boiler/address", "29551DDF030001");
+	give_address("/pump/address", "29551DDF030001");
+	TEST_ASSERT_EQUAL_INT(-30, answer(fd));
+	/* another device, another property, and an alias that nobody knows */
+	command("/29.551DDF030002/PIO.0");
+	give_address("/pump/address", "29551DDF030001");
+	write_reaches("/29.551DDF030002/PIO.0");
+	command("/29.551DDF030001/latch.0");
+	write_reaches("/29.551DDF030001/latch.0");
+	command("/29.551DDF030001/PIO.0");
+	alias_fails(-ENOENT);
+	write_reaches("/29.551DDF030001/PIO.0");
+	/* nobody has said which device it is */
+	command("/29.551DDF030001/PIO.0");
+	alias_fails(-ETIMEDOUT);
+	TEST_ASSERT_LESS_THAN_INT32(0, answer(fd));
+	TEST_ASSERT_NULL(port->take(port->ctx));
+}
+
 /* Just then: the new image is shown, and the server has not been told yet. */
 static void test_a_path_means_its_own_output_in_the_middle_of_a_reload(void)
 {
@@ -752,6 +812,7 @@ int main(void)
 	RUN_TEST(test_a_command_is_waited_for_over_a_reload);
 	RUN_TEST(test_signals_are_read_after_a_reload_though_the_server_may_not_command);
 	RUN_TEST(test_an_alias_of_the_device_of_an_output_is_that_device);
+	RUN_TEST(test_the_device_of_an_output_with_an_alias_is_that_output_by_its_id_too);
 	RUN_TEST(test_a_path_means_its_own_output_in_the_middle_of_a_reload);
 	RUN_TEST(test_who_left_in_the_middle_makes_room_when_the_engine_is_done);
 	RUN_TEST(test_directories_wait_for_each_other_when_all_rooms_are_taken);
