@@ -92,8 +92,8 @@ struct client {
 	size_t past;               /* bytes of an answered request that a bus still uses */
 	struct request request;
 	struct node node;
-	uint8_t whose[ROM_LEN]; /* WRITE: the device, also where the node has its alias */
-	int output;             /* WRITE: the record whose alias is asked for */
+	uint8_t whose[ROM_LEN];        /* WRITE: the device, also where the node has its alias */
+	int output;                    /* WRITE: the record whose alias is asked for */
 	char path[NODE_PATH_MAX + 16]; /* the path that the engine gets */
 	struct engine_guest guest;
 	struct tokens passed; /* go with the request to a target */
