@@ -67,7 +67,8 @@ def test_a_password_stands_in_a_file_that_is_ours_alone_or_in_a_credential(scene
 
 def test_the_access_list_of_the_fleet_lets_a_node_write_its_own_alone(scene):
     page = (owsdtest.SOURCE / "docs/fleet.md").read_text()
-    acl = scene.file("acl", re.search(r"^```text\n(pattern .*?)```", page, re.M | re.S)[1] + "user looker\ntopic read #\n")
+    rules = re.search(r"^```text\n(pattern .*?)```", page, re.M | re.S)[1]
+    acl = scene.file("acl", rules + "user looker\ntopic read #\ntopic write homeassistant/status\n")
     acl.chmod(0o600)
     lines = ("allow_anonymous false", f"password_file {passwords(scene)}", f"acl_file {acl}")
     house = locked_house(scene, lines, PasswordFile=secret(scene, "secret\n"), Write=raw("on"))
@@ -78,6 +79,12 @@ def test_the_access_list_of_the_fleet_lets_a_node_write_its_own_alone(scene):
                         "-t", topic, "-m", "forged"], check=True, timeout=owsdtest.PATIENCE)
     house.says("owsd/pi7/other", "forged")
     assert not house.listener.all("owsd/pi8/state")
+    birth = f"homeassistant/device/owsd_{SENSOR.replace('.', '_')}/config"
+    until(lambda: house.listener.last(birth), 20, "it is announced")
+    before = len(house.listener.all(birth))
+    subprocess.run([program("mosquitto_pub"), "-p", str(house.broker.port), "-u", "looker", "-P", "looker", "-q", "1",
+                    "-t", "homeassistant/status", "-m", "online"], check=True, timeout=owsdtest.PATIENCE)
+    until(lambda: len(house.listener.all(birth)) > before, 20, "Home Assistant starts, and it is announced again")
     assert "refuses" not in house.face.log(), house.face.log()
 
 
