@@ -152,6 +152,11 @@ def test_the_makefile_found_what_is_installed(scene):
     assert ("with libusb" in told) == (said["libusb"] != "no"), told
     generation = re.search(r"with libgpiod (\d)", told)
     assert (generation.group(1) if generation else "no") == said["libgpiod"], told
+    manual = (SOURCE / "docs/owsd.8").read_text()
+    for name in re.findall(r"^with(?:out)? (lib\w+)", told, re.M):
+        assert name in manual.split("\\-\\-version")[1].split(".TP")[0], f"owsd(8), -V, does not have {name}"
+    asked = re.search(r"`owsd -V` say `(.*?)`", (SOURCE / "docs/doctor.md").read_text())[1]
+    assert (asked in told) == (said["libi2c"] != "no"), (asked, told)
 
 
 class Compiler:
