@@ -463,6 +463,27 @@ def test_each_counter_that_owsctl_prints_has_its_words(scene):
     assert len(names) > 80 and not missing, (len(names), missing)
 
 
+def test_the_decimals_of_units_are_those_of_the_table(_scene):
+    page = (SOURCE / "docs/owsd.rio.5").read_text().replace("\n", " ")
+    page = page.replace("\\(de", "\u00b0").replace("\\(*m", "\u00b5")
+    said = re.search(r"programs get all\. Default: (.*?) \(two more", page)[1]
+    counts = ("none", "one", "two", "three")
+    units = {unit: counts.index(count) for count, names in re.findall(r"(none|one|two|three) for ([^;]*)", said)
+             for unit in re.split(", | and ", names)}
+    rows = re.search(r"\} wanted\[\] = \{(.*?)\n\};", (SOURCE / "hal/chips/facts.c").read_text(), re.S)[1]
+    table = {"\u00b0C" if name == "DEGREES_C" else json.loads(name): int(decimals)
+             for name, decimals in re.findall(r'\{("[^"]*"|\w+), (\d)\}', rows)}
+    assert len(table) >= 20 and units == table, (units, table)
+
+
+def test_each_variable_that_programs_read_stands_in_a_manual_page(_scene):
+    pages = re.sub(r"\\f.", " ", "".join(page.read_text() for page in MANUALS))
+    read = {name for folder in ("src", "hal") for file in (SOURCE / folder).rglob("*.c")
+            for name in re.findall(r'\b(?:getenv|environment|absolute)\("([A-Z_]+)"\)', file.read_text())}
+    missing = [name for name in sorted(read) if not re.search(rf"\b{name}\b", pages)]
+    assert len(read) >= 15 and not missing, (read, missing)
+
+
 def test_the_picture_of_the_live_table_can_be_drawn_again(scene):
     picture = scene.path / "table.svg"
     subprocess.run([sys.executable, SOURCE / "docs/live-table.py", picture], check=True, timeout=240)
