@@ -463,6 +463,35 @@ def test_each_counter_that_owsctl_prints_has_its_words(scene):
     assert len(names) > 80 and not missing, (len(names), missing)
 
 
+def members(found):
+    """All names in what a verb prints as JSON, but those of properties."""
+    if isinstance(found, list):
+        return set().union(*map(members, found))
+    if not isinstance(found, dict):
+        return set()
+    return {*found}.union(*(members(more) for name, more in found.items() if name != "values"))
+
+
+def test_each_member_of_json_that_owsctl_prints_stands_in_its_page(scene):
+    """docs/support.md promises them. Of stats the verb's own words say what there is."""
+    page = (SOURCE / "docs/owsctl.1").read_text().split("\n.SH VALUES IN JSON\n")[1].split("\n.SH ")[0]
+    known = set(re.findall(r"\w+", re.sub(r"\\f.", " ", page)))
+    wire = scene.file("wire.sim", "chip DS2482-100 0x18\nDS18B20 28.551DDF030000 temperature 21.5\n"
+                                  "DS2408 29.B89115000000\n")
+    room = "/28.551DDF030000/temperature"
+    daemon = scene.owsd(owsdtest.rio(f"sim:{wire}", [
+        {"Name": "room", "Path": room, "Type": "double", "LimitH": 20},
+        {"Name": "relay", "Path": "/29.B89115000000/PIO.0", "Type": "bool", "IO": "output"}]))
+    scene.until(lambda: "room" in scene.owsctl(daemon, "alarms").stdout, 20, "a value, and its alarm")
+    for verb in ("wait room > -55", "set -w 20 relay 1", "list", "get room", "alarms", "journal", "who", "instances",
+                 f"read {room}", "scan"):
+        done = scene.owsctl(daemon, "--json", *verb.split())
+        names = members(json.loads(done.stdout))
+        assert names and not names - known, f"{verb}: the page does not have {sorted(names - known)}\n{done.stderr}"
+    cells = set(re.findall(r"\bX\((\w+)\)", (SOURCE / "src/tool/owsctl/modbus_forms.h").read_text()))
+    assert len(cells) >= 9 and not cells - known, cells
+
+
 def test_the_decimals_of_units_are_those_of_the_table(_scene):
     page = (SOURCE / "docs/owsd.rio.5").read_text().replace("\n", " ")
     page = page.replace("\\(de", "\u00b0").replace("\\(*m", "\u00b5")
