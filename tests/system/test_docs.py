@@ -463,6 +463,31 @@ def test_each_counter_that_owsctl_prints_has_its_words(scene):
     assert len(names) > 80 and not missing, (len(names), missing)
 
 
+def test_each_option_has_its_words_in_a_manual_page(_scene):
+    def told(*command):
+        done = subprocess.run([owsdtest.BUILD / command[0], *command[1:], "--help"], capture_output=True, text=True,
+                              timeout=owsdtest.PATIENCE, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    def page(name):
+        return re.sub(r"\\f.", "", (SOURCE / "docs" / name).read_text()).replace("\\-", "-")
+
+    faces = [row[0] for row in standin.FACES if (owsdtest.BUILD / row[0]).exists()]
+    pages = {"owsd": (page("owsd.8"), [told("owsd")])}
+    pages |= {face: (page(f"{face}.8") + page("owsd-faces.7"), [told(face)]) for face in faces}
+    verbs = re.findall(r"^  ([a-z][a-z-]*) ", told("owsctl"), re.M)
+    pages["owsctl"] = page("owsctl.1"), [told("owsctl"), *(told("owsctl", verb) for verb in verbs)]
+    options = 0
+    for program, (text, helps) in pages.items():
+        for said in helps:
+            found = {*re.findall(r"(?<![\w-])--[a-z][a-z0-9-]*", said), *re.findall(r"^ +(-[a-zA-Z])\b", said, re.M)}
+            missing = [option for option in found if not re.search(rf"(?<![\w-]){option}(?![\w-])", text)]
+            options += len(found)
+            assert not missing, (program, missing, said)
+    assert len(verbs) > 20 and options > 60, (verbs, options)
+
+
 def members(found):
     """All names in what a verb prints as JSON, but those of properties."""
     if isinstance(found, list):

@@ -89,6 +89,9 @@ def test_the_help_of_each_verb_is_a_screen_with_an_example(scene):
         explained = "\n".join(lines[2:-2])
         missing = [o for o in options if not re.search(rf"(?<![\w-]){o}\b", explained)]
         assert not missing, (verb, missing)
+    opens = sorted(verb for verb in verbs if "-t TARGET" in ctl(scene, "help", verb).stdout.split("\n")[0])
+    named = re.search(r"-t TARGET +what (.*) open$", ctl(scene, "--help").stdout, re.M)[1]
+    assert sorted(re.findall(r"\w+", named.replace(" and ", " "))) == opens, (named, opens)
     assert max(map(len, ctl(scene, "--help").stdout.splitlines())) <= 80
     assert ctl(scene, "config", "x", "add", "--help").stdout == ctl(scene, "help", "config").stdout
 

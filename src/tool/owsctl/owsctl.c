@@ -168,7 +168,7 @@ static void print_verbs(FILE *out)
 		fprintf(out, "  %-10s %s\n", verbs[i].name, verbs[i].brief);
 	fputs("owsctl help VERB shows what a verb takes; before the verb there may be:\n"
 	      "  -n NAME    instance; default: OWS_NAME of the environment, else OWS;\n"
-	      "  -t TARGET  what dir, read, write and scan open\n"
+	      "  -t TARGET  what dir, read, write, scan and record open\n"
 	      "  --json     print JSON\n"
 	      "  -V -h      print the version; this help\n"
 	      "exit status: 0 done, 1 failed, 2 wrong usage, 3 a value is not good,\n"
