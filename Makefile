@@ -747,7 +747,7 @@ install-service:
 	@echo '     udevadm trigger --action=add --subsystem-match=w1; systemctl daemon-reload;'
 	@echo '     systemctl enable --now owsd      (its configuration: /etc/owsd/OWS.rio)'
 	@echo "     and after an upgrade: systemctl try-restart 'owsd*'"
-	@echo '     and for the page: owsctl enable web; likewise history, mqtt, influx, notify. owsctl doctor says what is wrong'
+	@echo '     and for the page: owsctl enable web; likewise $(patsubst owsd-%,%,$(filter-out owsd-web owsd-writer,$(FACES))). owsctl doctor says what is wrong'
 
 uninstall-service:
 	rm -f $(addprefix $(SERVICE_IN)/,$(SERVICE))

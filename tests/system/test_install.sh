@@ -142,6 +142,10 @@ for prefix in /usr/local /usr /opt /opt/owsd/ /; do
 		"systemctl try-restart 'owsd\*'"; do
 		grep -q -- "$command" said || { cat said; exit 1; }
 	done
+	for face in $(awk -F ' *[|] *' '/^owsd/ { print $1 }' "$OWSD_SOURCE/board/faces"); do
+		[ "$face" != owsd-writer ] || continue # web brings it
+		[ ! -x "$OWSD_BUILD/$face" ] || grep -q "owsctl enable .*\<${face#owsd-}\>" said || { cat said; exit 1; }
+	done
 	grep -qx "ExecStart=${prefix%/}/sbin/owsd -n %i \$OWSD_OPTIONS" "$in/systemd/system/owsd@.service"
 	# the genuine one finds them, and enables the instance that the unit names
 	if command -v systemctl >/dev/null; then
