@@ -49,6 +49,7 @@ static bool indicator_alarm(const struct image *image)
 		struct ows_slot slot;
 
 		if (reader_slot(record, &slot) && (slot.attrs.limit_state != OWS_LIMIT_NORMAL ||
+		                                   slot.sample.quality == OWS_Q_DIFFERS ||
 		                                   (slot.attrs.flags & OWS_ATTR_ALARM_STANDS)))
 			return true;
 	}

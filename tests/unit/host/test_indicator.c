@@ -120,6 +120,14 @@ static void test_the_alarm_line_is_on_as_long_as_an_alarm_stands_or_waits(void)
 	alarm(1, OWS_LIMIT_NORMAL, OWS_ATTR_ALARM_POLLED);
 	pass(SECOND);
 	TEST_ASSERT_FALSE(fake_gpio.line[ALARM].high);
+	/* an output that reads otherwise than it was written */
+	image_publish(&image, 1, &(struct ows_sample){.quality = OWS_Q_DIFFERS},
+	              &(struct ows_attrs){0}, NULL);
+	pass(SECOND);
+	TEST_ASSERT_TRUE(fake_gpio.line[ALARM].high);
+	alarm(1, OWS_LIMIT_NORMAL, 0);
+	pass(SECOND);
+	TEST_ASSERT_FALSE(fake_gpio.line[ALARM].high);
 	TEST_ASSERT_EQUAL_UINT(1, fake_gpio.line[ALARM].requests);
 }
 
