@@ -517,6 +517,19 @@ def test_each_member_of_json_that_owsctl_prints_stands_in_its_page(scene):
     assert len(cells) >= 9 and not cells - known, cells
 
 
+def test_the_labels_of_metrics_and_the_members_of_mqtt_stand_in_their_pages(_scene):
+    """What both promise to stay; the members of discovery are words of Home Assistant."""
+    verb = re.sub(r"\\f.", "", (SOURCE / "docs/owsctl.1").read_text().split("\n.SS metrics\n")[1].split("\n.SS ")[0])
+    labels = set(re.findall(r'(?:next|put)_label\(p, "(\w+)"', (SOURCE / "src/faces/show/metrics.c").read_text()))
+    said = set(re.findall(r"\w+", re.search("The labels are .*", verb)[0]))
+    assert len(labels) >= 5 and not labels - said, (labels, said)
+    page = set(re.findall(r"\w+", re.sub(r"\\f.", " ", (SOURCE / "docs/owsd-mqtt.8").read_text())))
+    texts = [(SOURCE / f"src/faces/mqtt/{file}.c").read_text().split("\nvoid health_entities_json(")[0]
+             for file in ("plain", "health", "devices", "ask", "arrivals")]
+    found = {name for text in texts for name in re.findall(r'\bjson_[a-z]+\(&?json, "(\w+)"', text)}
+    assert len(found) > 30 and not found - page, found - page
+
+
 def test_the_decimals_of_units_are_those_of_the_table(_scene):
     page = (SOURCE / "docs/owsd.rio.5").read_text().replace("\n", " ")
     page = page.replace("\\(de", "\u00b0").replace("\\(*m", "\u00b5")
