@@ -530,6 +530,17 @@ def test_the_labels_of_metrics_and_the_members_of_mqtt_stand_in_their_pages(_sce
     assert len(found) > 30 and not found - page, found - page
 
 
+def test_the_sandbox_of_the_service_is_that_of_install_md(_scene):
+    unit = (SOURCE / "board/systemd/owsd@.service").read_text()
+    said = (SOURCE / "docs/install.md").read_text().split("\n## The service\n")[1].split("\n## ")[0]
+    places = re.findall(r"^ReadWritePaths=-?(\S+)$", unit, re.M)
+    places.append("/var/lib/" + re.search(r"^StateDirectory=(\S+)$", unit, re.M)[1])
+    missing = [place for place in places if f"`{place}`" not in said]
+    assert len(places) >= 3 and not missing, (places, missing)
+    for key, words in (("TasksMax", "{} threads"), ("MemoryMax", "{} MB of memory"), ("User", "as the user `{}`")):
+        assert words.format(re.search(rf"^{key}=(\w+?)M?$", unit, re.M)[1]) in said.replace("\n", " "), key
+
+
 def test_the_decimals_of_units_are_those_of_the_table(_scene):
     page = (SOURCE / "docs/owsd.rio.5").read_text().replace("\n", " ")
     page = page.replace("\\(de", "\u00b0").replace("\\(*m", "\u00b5")
