@@ -530,7 +530,7 @@ def test_the_labels_of_metrics_and_the_members_of_mqtt_stand_in_their_pages(_sce
     assert len(found) > 30 and not found - page, found - page
 
 
-def test_the_sandbox_of_the_service_is_that_of_install_md(_scene):
+def test_the_sandboxes_of_the_services_are_those_of_the_pages(_scene):
     unit = (SOURCE / "board/systemd/owsd@.service").read_text()
     said = (SOURCE / "docs/install.md").read_text().split("\n## The service\n")[1].split("\n## ")[0]
     places = re.findall(r"^ReadWritePaths=-?(\S+)$", unit, re.M)
@@ -539,6 +539,11 @@ def test_the_sandbox_of_the_service_is_that_of_install_md(_scene):
     assert len(places) >= 3 and not missing, (places, missing)
     for key, words in (("TasksMax", "{} threads"), ("MemoryMax", "{} MB of memory"), ("User", "as the user `{}`")):
         assert words.format(re.search(rf"^{key}=(\w+?)M?$", unit, re.M)[1]) in said.replace("\n", " "), key
+    page = (SOURCE / "docs/owsd-faces.7").read_text()
+    places = [place.lstrip("-") for file in (SOURCE / "board/systemd").glob("owsd-*@.service")
+              for line in re.findall("^ReadWritePaths=(.*)$", file.read_text(), re.M) for place in line.split()]
+    missing = [place for place in places if f"\\fI{place}\\fR" not in page]
+    assert len(places) >= 3 and not missing, (places, missing)
 
 
 def test_the_decimals_of_units_are_those_of_the_table(_scene):
