@@ -253,6 +253,12 @@ void work_write_named(struct serve *s, struct client *c, int err)
 
 	if (!err && rom_parse((const char *)client_room(c), c->guest.answer.len, c->whose))
 		err = -EIO;
+	if (err == -ENOENT || err == -ENODEV) {
+		/* no device of a bus: a line of a chip, a button of the simulator, or nothing */
+		if (!work_ask_type(s, c))
+			work_write_target(s, c);
+		return;
+	}
 	if (err) {
 		answer_error(s, c, err);
 		return;

@@ -636,10 +636,22 @@ static void test_an_alias_of_the_device_of_an_output_is_that_device(void)
 	g->answer = (struct bus_answer){.len = 1};
 	port->answered(port->ctx, g);
 	TEST_ASSERT_EQUAL_INT(0, answer(fd));
+	/* no device has that name: it is a line of a chip, or a button of the simulator */
+	command("/simulator/PIO.0");
+	g = next_guest();
+	TEST_ASSERT_EQUAL_STRING("/simulator/address", g->path);
+	g->answer = (struct bus_answer){.err = -ENOENT};
+	port->answered(port->ctx, g);
+	g = next_guest();
+	TEST_ASSERT_EQUAL_STRING("/simulator/PIO.0", g->path);
+	TEST_ASSERT_EQUAL_INT(BUS_WRITE, g->op);
+	g->answer = (struct bus_answer){.len = 1};
+	port->answered(port->ctx, g);
+	TEST_ASSERT_EQUAL_INT(0, answer(fd));
 	/* nobody knows which device it is */
 	command("/lamp/PIO.0");
 	g = next_guest();
-	g->answer = (struct bus_answer){.err = -ENOENT};
+	g->answer = (struct bus_answer){.err = -ETIMEDOUT};
 	port->answered(port->ctx, g);
 	TEST_ASSERT_LESS_THAN_INT32(0, answer(fd));
 	command("/lamp/PIO.0");
@@ -672,7 +684,9 @@ static void alias_fails(int err)
 static void test_the_device_of_an_output_with_an_alias_is_that_output_by_its_id_too(void)
 {
 	static const struct instance_signal aliased[] = {
-		ROOM, {.name = "valve", .path = "/pump/PIO.0", .type = OWS_BOOL, .output = true}, FAN};
+		ROOM,
+		{.name = "valve", .path = "/pump/PIO.0", .type = OWS_BOOL, .output = true},
+		FAN};
 	static const int ports[] = {0};
 
 	instance_reload(&in, aliased, 3);
