@@ -294,7 +294,8 @@ def test_a_chip_that_is_away_is_born_once_for_what_it_had_and_dies_behind_it(sce
     def values():
         return [m.value for _, device, m in plant.host.metrics if device == PROBE and m.is_historical and m.value is not None]
     until(lambda: plant.host.look() and values()[-1:] == [900.0], 60, lambda: (values()[-5:], plant.house.face.log()))
-    assert values() == [float(n) for n in range(1, 901)], values()
+    # its birth had what it measured first; where that stands in the file after the face's start, it comes with the rest
+    assert values()[-900:] == [float(n) for n in range(1, 901)] and set(values()[:-900]) <= {5.0}, values()
     plant.host.hears("ddeath", PROBE)
     verbs = [verb for verb, device, _ in settled(lambda: list(plant.host.look())) if device == PROBE]
     assert [verb for verb, _ in itertools.groupby(verbs)] == ["dbirth", "ddata", "ddeath"], verbs
