@@ -50,8 +50,7 @@ void corpse_make(struct corpse *corpse, void (*first)(void))
 	corpse->hold = hold[1];
 	TEST_ASSERT_EQUAL(1, read(ready[0], &c, 1));
 	close(ready[0]);
-	for (int64_t until = ows_now() + PATIENCE_NS;
-	     !corpse_is(corpse->pid) && ows_now() < until;)
+	for (int64_t until = ows_now() + PATIENCE_NS; !corpse_is(corpse->pid) && ows_now() < until;)
 		usleep(1000); /* pace */
 	TEST_ASSERT_TRUE(corpse_is(corpse->pid));
 }

@@ -8,6 +8,7 @@
 
 #include "unity.h"
 
+#include "src/daemon/serve/listener.h"
 #include "src/daemon/serve/serve.h"
 #include "src/ground/service/listen.h"
 #include "tests/unit/aid/corpse.h"
@@ -83,6 +84,7 @@ static void test_a_port_of_a_killed_owsd_that_is_stuck_is_taken_once_it_is_free(
 	close(holder);
 	holder = -1;
 	TEST_ASSERT_EQUAL_MESSAGE(0, create(), why);
+	TEST_ASSERT_EQUAL(-EADDRINUSE, listeners_look(serve, 0));
 	for (int i = 0; i < 2; i++) {
 		TEST_ASSERT_EQUAL(1, serve_absent(serve, absent));
 		TEST_ASSERT_NOT_NULL(strstr(absent, "cannot listen at 127.0.0.1:"));

@@ -70,8 +70,7 @@ static void test_values_before_and_after_an_alarm_are_exact_too(void)
 
 	holds(&entry, true,
 	      "\"value\":\"9007199254740993\",\"before\":7,\"after\":\"9007199254740993\",");
-	holds(&entry, false,
-	      "\"value\":9007199254740993,\"before\":7,\"after\":9007199254740993,");
+	holds(&entry, false, "\"value\":9007199254740993,\"before\":7,\"after\":9007199254740993,");
 }
 
 /* Its text is that of the nearest double, which a browser has. */
