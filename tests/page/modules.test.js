@@ -36,3 +36,17 @@ test("a name that a module does not export is a fault", async () => {
 	const wrong = moduleOf(new URL("wrong.js", page), 'import {no} from "./words.js"; no();');
 	await assert.rejects(link(wrong), /no/);
 });
+
+test("files are small, and text goes in as text", () => {
+	const all = readdirSync(page).filter((name) => /\.(js|css|html|svg)$/.test(name));
+	const forbidden = ["innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function",
+		"http://", "https://", " style=", " onclick="];
+	assert.ok(all.length > 12);
+	for (const name of all) {
+		const text = readFileSync(new URL(name, page), "utf8");
+		assert.ok(text.slice(0, 120).includes("SPDX-License-Identifier: MIT"), name);
+		assert.ok(text.split("\n").length <= (name.endsWith(".js") ? 301 : 500), `${name} is too long`);
+		for (const word of forbidden)
+			assert.ok(!text.replaceAll("http://www.w3.org/2000/svg", "").includes(word), `${name}: ${word}`);
+	}
+});

@@ -58,8 +58,7 @@ export function show(query) {
 	}
 	if (Number(given.get("span")) >= LEAST_MS)
 		state.span = Number(given.get("span"));
-	if (given.has("until"))
-		state.until = Number(given.get("until")) || null;
+	state.until = Number(given.get("until") ?? state.until) || null;
 	state.beside = given.has("beside");
 	load().then(renewed);
 }
