@@ -28,7 +28,7 @@ def package(scene):
     env = {k: v for k, v in os.environ.items() if not k.startswith(("MAKE", "MFLAGS"))}
     subprocess.run(["make", "-s", *kept, "-C", SOURCE, "--no-print-directory", f"B={BUILD}",
                     f"DESTDIR={root}", "PREFIX=/usr", "install"], check=True, env=env,
-                   stdout=subprocess.DEVNULL, timeout=owsdtest.PATIENCE)
+                   stdout=subprocess.DEVNULL, timeout=4 * owsdtest.PATIENCE)
     way = root / "usr/share/cockpit/owsd/cockpit.js"
     text = way.read_text()
     assert text.count('"/run/owsd"') == 1, "the directory of the sockets"
