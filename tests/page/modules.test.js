@@ -46,7 +46,8 @@ test("files are small, and text goes in as text", () => {
 		const text = readFileSync(new URL(name, page), "utf8");
 		assert.ok(text.slice(0, 120).includes("SPDX-License-Identifier: MIT"), name);
 		assert.ok(text.split("\n").length <= (name.endsWith(".js") ? 301 : 500), `${name} is too long`);
+		const own = text.replaceAll("http://www.w3.org/2000/svg", "");
 		for (const word of forbidden)
-			assert.ok(!text.replaceAll("http://www.w3.org/2000/svg", "").includes(word), `${name}: ${word}`);
+			assert.ok(!own.includes(word), `${name}: ${word}`);
 	}
 });
