@@ -98,15 +98,17 @@ reloads() {
 	for s in $services; do does "$s takes the first file" timeout 40 systemctl reload "$s"; done
 	same 'the same processes run' "$before" "$(pids "$services")"
 }
-# switches: owsctl enable and disable do it, for each face and under the name that people have for one
+# switches: owsctl enable and disable do it, for each face and under the name that people have for one;
+# the writer comes and goes with the page, which asks it
 switches() {
 	for face in web mqtt influx history notify modbus; do
 		unit=$(case $face in history) echo owsd-recorder ;; *) echo "owsd-$face" ;; esac)
+		own=$(units "$unit" | tr ' ' '\n' | grep @OWS | xargs)
 		does "owsctl disable $face" owsctl disable $face
-		does "$face is off" sh -c "! systemctl -q is-active '$unit@OWS.*' && ! systemctl -q is-enabled $unit@OWS.service"
+		does "$face is off" sh -c "! systemctl -q is-active $own && ! systemctl -q is-enabled $own"
 		does "$face of another instance goes on" all_serving "$(units "$unit" | tr ' ' '\n' | grep HOUSE)"
 		does "owsctl enable $face" owsctl enable $face
-		does "$face runs" within 20 all_serving "$(units "$unit" | tr ' ' '\n' | grep "^$unit@OWS")"
+		does "$face runs" within 20 all_serving "$own"
 	done
 	same 'enable says where the page is' 'page: http://127.0.0.1:8080/ /run/owsd/OWS.web' "$(owsctl enable web | grep page:)"
 }
@@ -209,6 +211,7 @@ OwsDrv {
   TargetName "localhost:4304"
   Web {
     Listen "127.0.0.1:8080"
+    Configure on
   }
   Influx {
     Url "http://127.0.0.1:8428/write"
