@@ -61,16 +61,17 @@ class Terminal:
                     raise AssertionError(f"ended without {what!r}:\n{self.text}") from None
 
     def group(self):
-        """Processes of this terminal's session that live."""
-        found = []
+        """Processes of this terminal's session that live: of each its line in /proc."""
+        found = {}
         for path in glob.glob("/proc/[0-9]*/stat"):
             try:
                 with open(path, encoding="utf-8", errors="replace") as f:
-                    fields = f.read().rsplit(")", 1)[1].split()
+                    line = f.read()
             except OSError:
                 continue
+            fields = line.rsplit(")", 1)[1].split()
             if int(fields[3]) == self.pid and fields[0] not in "ZX":
-                found.append(path)
+                found[path] = line
         return found
 
     def ended(self):
@@ -92,7 +93,7 @@ class Terminal:
                         time.sleep(0.02)  # pace
                 elif self.master is None:
                     time.sleep(0.02)  # pace
-                assert time.monotonic() < deadline, f"still there: {self.group()}"
+                assert time.monotonic() < deadline, f"still there: {self.group().values()} behind:\n{self.text}"
             # what they wrote last may still be in the terminal
             while self.master is not None and select.select([self.master], [], [], 0)[0]:
                 try:
