@@ -328,6 +328,11 @@ def test_it_ends_in_order_and_begins_where_it_was(scene):
     living = lives(house)
     assert {name for name, uid in living.items() if uid == USERS["owsd"]} >= {"owsd", "owsd-web", "owsd-mqtt", "owsd-recorder"}
     assert not [name for name, uid in living.items() if uid == 0 and name.startswith("owsd") and name != "owsd-addon"], living
+
+    def said():
+        faces = json.loads(house.inside("owsctl", "--json", "stats").stdout)["faces"]
+        return {face["program"] for face in faces if face["alive"]} >= {"owsd-web", "owsd-mqtt", "owsd-recorder"}
+    until(said, 20, lambda: house.inside("owsctl", "stats").stdout)
     assert house.addon.stop(60) == 0
     assert not lives(house), lives(house)
     assert listener.last("owsd/homeassistant/state") == "offline"
