@@ -36,7 +36,7 @@ static const struct program {
          .kind = PAST},
 	{.name = "owsd-web",
          .starts = "owsd-web -c /tmp/present.rio",
-         .asks = "curl -sf -m 30 http://127.0.0.1:8080/api/signals | tr '{' '\\n' | "
+         .asks = "curl -sf -m 30 http://127.0.0.1:8080/api/signals | sed 's/\"i\":/\\n&/g' | "
                  "sed -n 's/.*\"name\":\"warm\".*\"value\":\\([-0-9.][-0-9.]*\\),.*/\\1/p'",
          .signal = WARM,
          .late = STALE_AFTER + ON_WAY},
