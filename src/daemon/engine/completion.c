@@ -298,6 +298,8 @@ static void write_succeeded(struct engine *e, struct lane *lane, const struct sl
 	s->command.confirmed = true;
 	s->command.lapsed = false;
 	s->command.agrees = s->command.doubted = false;
+	if (slot->begun_ns >= s->command.unproven_ns)
+		s->command.unproven_ns = 0;
 	if (signal_has_device(s) && e->table.devices[s->device].por == POR_SET)
 		e->table.devices[s->device].por = POR_UNKNOWN; /* the write may have cleared it */
 	s->command.written = slot->value;

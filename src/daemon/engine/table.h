@@ -59,6 +59,7 @@ struct signal_command {
 	int64_t value, written;
 	int64_t ended_ns;       /* of the last write: what was asked before says nothing of it */
 	int64_t looked_ns;      /* it was asked for past the caches last */
+	int64_t unproven_ns;    /* por was cleared after the write then; 0: it was read since */
 	enum ows_reason reason; /* how it came into force */
 	uint32_t controller;    /* an index of engine.controllers, or CONTROLLER_NOBODY */
 	uint32_t stamp;         /* as its controller counts; 0: owsd gave the command */

@@ -368,6 +368,24 @@ static void test_an_output_that_changed_by_itself_tells_of_another_restart(void)
 	TEST_ASSERT_EQUAL_UINT(2, journal());
 }
 
+/* Whatever is seen first: the output that differs, or the por that can be cleared at last. */
+static void test_a_restart_while_por_stands_loses_no_command(void)
+{
+	for (int64_t after = 0; after < 40 * SCENE_S; after += 500 * SCENE_MS) {
+		board(refused());
+		s.items[1].read_back_ns = 10 * SCENE_S;
+		lose_power();
+		scene_run(&s, 300 * SCENE_MS + after);
+		lose_power();
+		scene_refuse_writes(&s, D "/set_alarm", 0);
+		scene_run(&s, 120 * SCENE_S);
+		TEST_ASSERT_FALSE(unarmed(1));
+		TEST_ASSERT_EQUAL_STRING("7", scene_at(&s, PIO));
+		again();
+	}
+	board(no_set_alarm());
+}
+
 static void test_an_output_that_never_is_what_was_written_tells_of_none(void)
 {
 	no_set_alarm();
@@ -566,6 +584,7 @@ int main(void)
 	RUN_TEST(test_a_restart_before_owsd_began_is_for_the_verbose_log_alone);
 	RUN_TEST(test_a_device_that_is_back_is_not_said_to_be_armed_while_it_is_not);
 	RUN_TEST(test_an_output_that_changed_by_itself_tells_of_another_restart);
+	RUN_TEST(test_a_restart_while_por_stands_loses_no_command);
 	RUN_TEST(test_an_output_that_never_is_what_was_written_tells_of_none);
 	RUN_TEST(test_several_items_of_one_device_tell_of_one_restart);
 	RUN_TEST(test_an_item_that_can_end_the_restart_does_so_for_the_others);

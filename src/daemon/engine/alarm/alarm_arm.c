@@ -85,8 +85,17 @@ void alarm_por_set(struct alarm_machine *m, struct lane *lane, struct alarm_item
 	}
 }
 
+/* Another restart while por stood leaves no trace, but in outputs that were written meanwhile. */
+static void doubt_outputs(struct engine *e, const struct device *d)
+{
+	for (uint32_t k = 0; k < d->count; k++)
+		d->signals[k]->command.unproven_ns = e->time.now_ns;
+}
+
 void alarm_por_clear(struct alarm_machine *m, struct engine *e, const struct alarm_item *i)
 {
+	if (i->restart.known)
+		doubt_outputs(e, &e->table.devices[i->device]);
 	for (uint32_t k = 0; k < m->count; k++) {
 		struct alarm_item *other = m->items[k];
 

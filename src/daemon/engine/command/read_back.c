@@ -141,9 +141,10 @@ static void restore_command(struct engine *e, struct signal *s)
 {
 	struct signal_restore *r = &s->restore;
 
-	if (!s->item->restores || !s->command.differs || !signal_writes(s) ||
-	    e->time.now_ns < r->not_before_ns)
+	if (!(s->item->restores || s->command.unproven_ns) || !s->command.differs ||
+	    !signal_writes(s) || e->time.now_ns < r->not_before_ns)
 		return;
+	s->command.unproven_ns = 0;
 	r->not_before_ns = e->time.now_ns + (RESTORE_FIRST_NS << r->doublings);
 	r->doublings += r->doublings < RESTORE_DOUBLINGS;
 	log_notice(e->log, "%s (%s): the command is written again", s->item->name, s->item->path);
@@ -200,6 +201,8 @@ bool engine_compare(struct engine *e, struct lane *lane, struct signal *s, const
 		return false;
 	}
 	c->doubted = false;
+	if (agrees && slot->begun_ns >= c->unproven_ns)
+		c->unproven_ns = 0;
 	if (c->agrees && !agrees)
 		alarm_output_differs(&lane->alarm, s->device);
 	c->agrees = agrees;
