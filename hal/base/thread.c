@@ -11,7 +11,8 @@
 #include "hal/base/time.h"
 
 #define YIELD_LONG_NS (NS_PER_MS / 2)
-#define REST 32 /* after a long one there is none for so many times its time */
+#define REST 32 /* after a long one there is none for so many times its time, */
+#define REST_MOST_NS (10 * NS_PER_S) /* ... but not for longer: the process may have been stopped */
 
 /* On the maker's stack, until the thread has taken it. */
 struct start {
@@ -74,6 +75,6 @@ bool thread_yield(int64_t *rest_ns)
 	sched_yield();
 	ended_ns = clock_ns(CLOCK_MONOTONIC);
 	if (ended_ns - begun_ns > YIELD_LONG_NS)
-		*rest_ns = ended_ns + REST * (ended_ns - begun_ns);
+		*rest_ns = ended_ns + earlier_ns(REST * (ended_ns - begun_ns), REST_MOST_NS);
 	return true;
 }

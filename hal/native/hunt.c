@@ -27,8 +27,9 @@
 
 #define PASS_NS (NS_PER_S * 12 / 100)
 #define PASS_TOUCH_NS (NS_PER_S / 10)
-#define PASS_SHARE 8     /* passes take one part in so many of the time */
-#define OVERDUE_SHARE 40 /* ... or in so many where something else is always to do, */
+#define PASS_SHARE 8                /* passes take one part in so many of the time */
+#define PASS_MOST_NS (5 * NS_PER_S) /* one that took longer: the host slept, the adapter hung */
+#define OVERDUE_SHARE 40            /* ... or in so many where something else is always to do, */
 #define OVERDUE_MIN_NS (NS_PER_S * 6 / 10)
 #define OVERDUE_NS NS_PER_S     /* ... but one is made after this time */
 #define ROUND_NS (5 * NS_PER_S) /* between two, */
@@ -271,7 +272,7 @@ static void timed_pass(struct native *native, unsigned n, int64_t now)
 
 	native->hunter = n + 1;
 	hunt_pass(native, n, now);
-	native->pass_ns = native_now(native) - now;
+	native->pass_ns = earlier_ns(native_now(native) - now, PASS_MOST_NS);
 	pause = native->pass_ns * (PASS_SHARE - 1);
 	int64_t least = native->touch ? PASS_TOUCH_NS : PASS_NS;
 	native->hunt_ns = native_now(native) + (pause > least ? pause : least);

@@ -13,6 +13,7 @@
 
 #define SHARE 10 /* looks take one part in so many of the time */
 #define IDLE_SHARE 4
+#define LOOK_MOST_NS NS_PER_S /* one that took longer: the host slept, or the adapter hung */
 #define SAVED_NS NS_PER_S
 #define TOUCH_NS (2 * NS_PER_S)
 #define TRIES 3
@@ -425,7 +426,7 @@ bool locate_step(struct native *native, int64_t now, bool idle, int64_t *next)
 	                    : !locate_begin(native, now, next))
 		return false;
 	bool found = locate_look(native, now);
-	locate->took_ns = native_now(native) - now;
+	locate->took_ns = earlier_ns(native_now(native) - now, LOOK_MOST_NS);
 	/* A whole wire that comes back is not to wait. */
 	if (!found) {
 		locate->credit_ns -= locate->took_ns;

@@ -35,6 +35,7 @@
 #define TURN_SHARE 4            /* ... all of them take one part in so many of the time */
 #define HOLDS_NS (150 * TXN_MS) /* a branch with a key */
 #define USED_NS (100 * TXN_MS)  /* still on: not because of this search */
+#define ROUND_MOST_NS NS_PER_S  /* one that took longer: the host slept, the adapter hung */
 #define SPOILED_MAX 3
 
 static const uint8_t families[] = {0x01, 0x81};
@@ -84,7 +85,7 @@ static bool found_key(struct native *native, unsigned n, const uint8_t rom[8], i
 static void end_round(struct native *native, unsigned n, int64_t now)
 {
 	struct touch *touch = &native->channel[n].touch;
-	int64_t took = now - touch->round_ns;
+	int64_t took = earlier_ns(now - touch->round_ns, ROUND_MOST_NS);
 
 	touch->searching = false;
 	touch->family = 0;

@@ -9,19 +9,25 @@
 #define ALL 30
 #define PATIENCE_NS (10 * HOST_S)
 
+#define SLEEP_NS (3600 * HOST_S)
+#define SOON_NS (60 * HOST_S)
+
 static int64_t slower_ns; /* each reset and slot takes so much longer */
+static unsigned sleeps;   /* the host sleeps at the reset or slot that counts it to zero */
 
 static void keep_it(int64_t now)
 {
 	(void)now;
 	host.now += slower_ns;
+	if (sleeps && !--sleeps)
+		host.now += SLEEP_NS;
 }
 
 void setUp(void)
 {
 	native_begin();
 	wire_init(&host, 1, 1);
-	slower_ns = 0;
+	slower_ns = sleeps = 0;
 	wire_net.used = keep_it;
 }
 
@@ -114,6 +120,70 @@ static void test_a_late_command_is_done_or_an_error(void)
 	TEST_ASSERT_LESS_THAN_UINT(60, errors);
 }
 
+/* Runs until the host has slept in a search, at its slot `at`. */
+static void sleep_in_a_search(unsigned at)
+{
+	int64_t slept = host.now + SLEEP_NS;
+
+	sleeps = at;
+	while (host.now < slept)
+		host_run(&host, bus, host.now + 100 * HOST_MS);
+}
+
+/* Sleep is no use of the wire, of which searches leave others their share. */
+static void test_what_is_plugged_in_after_a_sleep_in_a_search_is_found(void)
+{
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_add(0, "DS18B20", 2);
+	start();
+	for (unsigned at = 1; at < 400; at += 57) {
+		slave->plugged = false;
+		host_run(&host, bus, host.now + SOON_NS);
+		uint64_t found = counted("devices_found");
+		sleep_in_a_search(at);
+		slave->plugged = true;
+		host_run(&host, bus, host.now + SOON_NS);
+		TEST_ASSERT_EQUAL_UINT64(found + 1, counted("devices_found"));
+	}
+}
+
+static void test_a_key_is_noticed_after_a_sleep_in_the_search_for_keys(void)
+{
+	struct sim_slave *key = wire_add(0, "DS2401", 1);
+	char why[80] = "";
+
+	start();
+	TEST_ASSERT_EQUAL_INT(0, bus_option(bus, "Touch", "on", why, sizeof(why)));
+	for (unsigned at = 1; at < 100; at += 9) {
+		key->plugged = false;
+		host_run(&host, bus, host.now + SOON_NS);
+		uint64_t found = counted("devices_found");
+		sleep_in_a_search(at);
+		key->plugged = true;
+		host_run(&host, bus, host.now + 5 * HOST_S);
+		TEST_ASSERT_EQUAL_UINT64(found + 1, counted("devices_found"));
+	}
+}
+
+static void test_what_was_looked_for_in_a_sleep_is_read_after_it(void)
+{
+	struct sim_slave *slave = wire_add(0, "DS18B20", 1);
+
+	wire_add(0, "DS18B20", 2);
+	start();
+	for (unsigned at = 1; at < 400; at += 57) {
+		slave->plugged = false;
+		host_run(&host, bus, host.now + SOON_NS);
+		ask_within(PATIENCE_NS, BUS_READ, of(slave, "temperature12"), NULL);
+		sleep_in_a_search(at);
+		slave->plugged = true;
+		uint32_t id = ask_within(PATIENCE_NS, BUS_READ, of(slave, "temperature12"), NULL);
+		TEST_ASSERT_EQUAL_INT(0, answer_to(id)->err);
+		forget();
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -121,5 +191,8 @@ int main(void)
 	RUN_TEST(test_all_are_read_though_each_transaction_takes_too_long);
 	RUN_TEST(test_no_request_waits_for_ever);
 	RUN_TEST(test_a_late_command_is_done_or_an_error);
+	RUN_TEST(test_what_is_plugged_in_after_a_sleep_in_a_search_is_found);
+	RUN_TEST(test_a_key_is_noticed_after_a_sleep_in_the_search_for_keys);
+	RUN_TEST(test_what_was_looked_for_in_a_sleep_is_read_after_it);
 	return UNITY_END();
 }
