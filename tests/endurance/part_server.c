@@ -100,7 +100,7 @@ static void answer(struct part *part, struct server_client *c, const struct fram
 	memcpy(c->out + FRAME_HEADER, text, (size_t)reply.payload);
 	c->len = FRAME_HEADER + (unsigned)reply.payload;
 	c->sent = 0;
-	c->close = c->hangs = false;
+	c->close = c->hangs = c->by_bytes = false;
 	c->due_ns = world_now() + (1 + (int64_t)world_random(20)) * FIELD_MS;
 	if (request->type == FRAME_READ && strstr(path, "temperature"))
 		c->due_ns += 750 * FIELD_MS;
@@ -130,7 +130,7 @@ static void take(struct part *part, struct server_client *c)
 	c->got -= size;
 }
 
-static void send_due(struct server *s, struct server_client *c)
+static void send_due(struct server_client *c)
 {
 	uint8_t alive[FRAME_HEADER] = {0};
 
@@ -142,7 +142,7 @@ static void send_due(struct server *s, struct server_client *c)
 			c->alive_ns = world_now() + 5 * FIELD_S;
 	}
 	while (c->fd >= 0 && c->due_ns <= world_now()) {
-		unsigned part = s->lie == BY_BYTES ? 1 : c->len - c->sent;
+		unsigned part = c->by_bytes ? 1 : c->len - c->sent;
 
 		if (part > c->len - c->sent)
 			part = c->len - c->sent;
@@ -220,7 +220,7 @@ static void run(struct part *part)
 	look(part);
 	for (unsigned i = 0; i < SERVER_CLIENTS; i++)
 		if (s->client[i].fd >= 0)
-			send_due(s, &s->client[i]);
+			send_due(&s->client[i]);
 }
 
 static int64_t ready(struct part *part, int fd, short events)

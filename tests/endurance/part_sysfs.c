@@ -6,6 +6,7 @@
  */
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -230,8 +231,10 @@ static int64_t given(const struct part *part, int64_t measured_ns)
 	for (unsigned i = 0; i < CALLS; i++) {
 		int64_t begin = s->longest[i].begin, end = s->longest[i].end + CONVERT_NS;
 
-		if (begin <= measured_ns + 5 * FIELD_S && end >= measured_ns && end > ns)
+		if (begin <= ns + 5 * FIELD_S && end >= measured_ns && end > ns) {
 			ns = end;
+			i = UINT_MAX; /* one may have followed that was looked at before */
+		}
 	}
 	return ns;
 }

@@ -45,7 +45,7 @@ struct server_client {
 	uint8_t in[SERVER_ROOM], out[SERVER_ROOM];
 	unsigned got, len, sent;
 	int64_t due_ns, alive_ns; /* INT64_MAX: nothing is to be sent */
-	bool close, hangs;
+	bool close, hangs, by_bytes;
 };
 
 struct server {

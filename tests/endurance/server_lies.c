@@ -81,8 +81,10 @@ void server_lie(struct server_client *c, enum lie lie)
 	case MORE:
 		c->len += 3;
 		break;
-	case HONEST:
 	case BY_BYTES:
+		c->by_bytes = true;
+		break;
+	case HONEST:
 	case ERRORS:
 	case NO_DEVICE:
 	case FAULT_85:
