@@ -74,19 +74,20 @@ void remark(const char *form, ...)
 	va_end(args);
 }
 
-void violated(const char *form, ...)
+bool violated(const char *form, ...)
 {
 	char what[64];
 	va_list args;
 
 	bad++;
 	if (shown++ >= SHOWN)
-		return;
+		return false;
 	snprintf(what, sizeof(what),
 	         "not ok - endurance: at %.1f s: ", (double)(ows_now() - begun) / 1e9);
 	va_start(args, form);
 	line(what, form, args);
 	va_end(args);
+	return true;
 }
 
 static unsigned below(unsigned n)

@@ -19,7 +19,8 @@ extern const char *const signal_names[SIGNALS];
 
 /* --- Results: lines as the rig counts them --- */
 void passed(const char *form, ...) __attribute__((format(printf, 1, 2)));
-void violated(const char *form, ...) __attribute__((format(printf, 1, 2)));
+/* False: so many were in this episode that it is not shown. */
+bool violated(const char *form, ...) __attribute__((format(printf, 1, 2)));
 void remark(const char *form, ...) __attribute__((format(printf, 1, 2)));
 
 /* --- What is true: which values the inputs had when --- */
@@ -31,6 +32,8 @@ void truth_relays(unsigned pins);
 bool truth_between(int input, double value, int64_t from_ns, int64_t until_ns);
 /* Is it what is there now? */
 bool truth_now(int input, double value);
+/* Remarks: what it was lately. */
+void truth_explain(int input);
 /* An event of the scenario language; false: refused. */
 bool sim_tell(const char *event);
 

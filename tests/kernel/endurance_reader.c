@@ -74,10 +74,12 @@ static bool get(int i, struct ows_value *value)
 
 /*
  * What was on its way while owsd stood still is as old as its request: it may be true since then.
+ * So may what the chip has that the wire feeds: nothing shows which of the conversions since its
+ * last reading it has carried out, so that the reading is as old as the first.
  */
-static int64_t true_until(const struct ows_value *value, int64_t now)
+static int64_t true_until(int i, const struct ows_value *value, int64_t now)
 {
-	return value->measured_ns < stood_until_ns ? now : value->measured_ns;
+	return i == COLD || value->measured_ns < stood_until_ns ? now : value->measured_ns;
 }
 
 static void check(int i, const struct ows_value *value, int64_t now)
@@ -91,9 +93,11 @@ static void check(int i, const struct ows_value *value, int64_t now)
 		violated("%s is good and %.1f s old", signal_names[i], (double)value->age_ns / 1e9);
 	measured[i] = value->measured_ns;
 	if (i < INPUTS &&
-	    !truth_between(i, value->number, value->measured_ns - SLACK, true_until(value, now)))
-		violated("%s is good and false: %g, measured %.3f s ago", signal_names[i],
-		         value->number, (double)value->age_ns / 1e9);
+	    !truth_between(i, value->number, value->measured_ns - SLACK,
+	                   true_until(i, value, now)) &&
+	    violated("%s is good and false: %g, measured %.3f s ago", signal_names[i],
+	             value->number, (double)value->age_ns / 1e9))
+		truth_explain(i);
 }
 
 void reader_stood(void)

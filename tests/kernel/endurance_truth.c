@@ -106,6 +106,19 @@ bool truth_between(int input, double value, int64_t from_ns, int64_t until_ns)
 	return low == 0 || in_force(outputs, output_changes, low, from_ns - 60 * SECOND, until_ns);
 }
 
+void truth_explain(int input)
+{
+	int64_t now = ows_now();
+
+	for (unsigned i = changes[input], n = 0; i-- > 0 && n < 4; n++) {
+		const struct change *c = &history[input][i % KEPT];
+
+		remark("%s was set to %g between %.3f s and %.3f s ago", signal_names[input],
+		       c->value, (double)(now - c->before_ns) / 1e9,
+		       (double)(now - c->after_ns) / 1e9);
+	}
+}
+
 bool truth_now(int input, double value)
 {
 	double there = history[input][(changes[input] - 1) % KEPT].value;
