@@ -15,7 +15,7 @@
 
 #define SETTLE_NS NS_PER_MS /* a device reset takes 0.5 us */
 #define BUSY_NS (5 * NS_PER_MS)
-#define TRIES 2
+#define TRIES 3
 
 static bool just_reset(int status)
 {
@@ -66,15 +66,31 @@ static int prove(struct ds2482_chip *chip)
 	return -ETIMEDOUT;
 }
 
-static void find_part(struct ds2482_chip *chip)
+/* 0, or that the chip refuses to point there, which noise can look like; else an error. */
+static int point_at(struct ds2482_chip *chip, uint8_t pointer)
 {
-	if (ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_CHANNEL) == 0)
-		chip->part = DS2482_800;
-	else if (ds2482_write2(chip, DS2482_READ_POINTER, DS2482_AT_PORT) == 0)
+	int err = -ENXIO;
+
+	for (unsigned i = 0; i < TRIES && ds2482_is_refused(err); i++)
+		err = ds2482_write2(chip, DS2482_READ_POINTER, pointer);
+	return err;
+}
+
+static int find_part(struct ds2482_chip *chip)
+{
+	int err = point_at(chip, DS2482_AT_CHANNEL);
+
+	chip->part = DS2482_800;
+	if (ds2482_is_refused(err)) {
 		chip->part = DS2482_ADJUSTABLE;
-	else
+		err = point_at(chip, DS2482_AT_PORT);
+	}
+	if (ds2482_is_refused(err)) {
 		chip->part = DS2482_100;
+		err = 0;
+	}
 	chip->channels = chip->part == DS2482_800 ? 8 : 1;
+	return err;
 }
 
 int ds2482_detect(struct ds2482_chip *chip)
@@ -93,8 +109,7 @@ int ds2482_detect(struct ds2482_chip *chip)
 	status = device_reset(chip);
 	if (!just_reset(status))
 		return status < 0 ? status : -ENXIO;
-	find_part(chip);
-	return 0;
+	return find_part(chip);
 }
 
 int ds2482_configure(struct ds2482_chip *chip, uint8_t config)

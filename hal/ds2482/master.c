@@ -99,6 +99,7 @@ static void explain(const struct ds2482_master *master, int err, int address, ch
 			snprintf(why, size, "a driver has 0x%02x on %s", (unsigned)address, name);
 		break;
 	case -ENXIO:
+	case -EIO:
 		if (address >= 0)
 			snprintf(why, size,
 			         "no DS2482 answers at 0x%02x on %s: look at supply, "

@@ -119,6 +119,25 @@ static void test_one_refused_byte_does_not_fail_the_reset_of_a_chip(void)
 	}
 }
 
+/* A chip with eight channels that refuses a byte is none with one channel. */
+static void test_one_refused_byte_makes_no_other_chip_of_one_that_is_opened(void)
+{
+	for (unsigned i = 0; i < DS_KINDS; i++) {
+		ds_start(ds_kinds[i]);
+		unsigned channels = ds.master->ops->channels(ds.master), opened = 0;
+		for (unsigned nth = 1; nth < 40; nth++) {
+			ds.master->ops->close(ds.master);
+			ds.net.refuse_data[0] = (struct refusal){.each = 1000, .count = 1000 - nth};
+			if (ds.master->ops->open(ds.master, ds.why, sizeof(ds.why)))
+				continue;
+			opened++;
+			TEST_ASSERT_EQUAL_UINT(channels, ds.master->ops->channels(ds.master));
+		}
+		TEST_ASSERT_GREATER_THAN_UINT(0, opened);
+		tearDown();
+	}
+}
+
 /* The chip saw it (SD), and the line is high again when it is asked. */
 static void test_a_short_that_ends_within_the_reset_is_a_short(void)
 {
@@ -372,6 +391,7 @@ int main(void)
 	RUN_TEST(test_a_stuck_chip_is_an_error_in_time_and_a_reset_frees_it);
 	RUN_TEST(test_a_chip_that_takes_no_configuration_or_channel_is_not_used);
 	RUN_TEST(test_one_refused_byte_does_not_fail_the_reset_of_a_chip);
+	RUN_TEST(test_one_refused_byte_makes_no_other_chip_of_one_that_is_opened);
 	RUN_TEST(test_a_short_that_ends_within_the_reset_is_a_short);
 	RUN_TEST(test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck);
 	RUN_TEST(test_a_missing_chip_is_taken_when_it_is_there_again);
