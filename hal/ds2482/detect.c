@@ -103,6 +103,7 @@ int ds2482_detect(struct ds2482_chip *chip)
 		return status;
 	if (!just_reset(status) || !just_reset(ds2482_read1(chip)))
 		return -ENXIO;
+	chip->answered = true;
 	status = prove(chip);
 	if (status)
 		return status;

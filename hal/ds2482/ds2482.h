@@ -53,6 +53,7 @@ struct ds2482_chip {
 	uint8_t address;
 	enum ds2482_part part;
 	unsigned channels;
+	bool answered;           /* when it was looked for last, as a DS2482 after a reset */
 	bool lost;               /* reset or changed by another program: it needs a chip reset */
 	uint8_t channel;         /* the selected channel */
 	uint8_t config;          /* the configuration in the chip */

@@ -130,6 +130,7 @@ static int take_chip(struct ds2482_master *master, uint8_t address)
 	struct i2c_adapter *adapter = master->adapter;
 	int err = adapter->ops->claim(adapter, address);
 
+	chip->answered = false;
 	if (err)
 		return err;
 	chip->master = master;
@@ -159,8 +160,8 @@ static bool ends_all(int err)
 }
 
 /*
- * Call take_chip(), and note whether the chip is missing: it was here before, or it failed in
- * another way than an address without a chip does.
+ * Call take_chip(), and note whether the chip is missing: it was here before, it answered at first,
+ * or it failed in another way than an address without a chip does.
  */
 static int try_chip(struct ds2482_master *master, uint8_t address)
 {
@@ -170,8 +171,10 @@ static int try_chip(struct ds2482_master *master, uint8_t address)
 		return err;
 	if (!err && !is_known(master, address))
 		master->order[master->known++] = address;
-	master->missing[address - DS2482_FIRST_ADDRESS] = err && (is_known(master, address) ||
-	                                                          (err != -ENXIO && err != -EIO));
+	master->missing[address - DS2482_FIRST_ADDRESS] = err &&
+	                                                  (is_known(master, address) ||
+	                                                   master->chip[master->count].answered ||
+	                                                   (err != -ENXIO && err != -EIO));
 	return err;
 }
 

@@ -138,6 +138,31 @@ static void test_one_refused_byte_makes_no_other_chip_of_one_that_is_opened(void
 	}
 }
 
+/* However far it came before it refused a byte, it is asked again. */
+static void test_a_second_chip_that_is_disturbed_at_the_start_is_not_left_out(void)
+{
+	unsigned later = 0;
+
+	for (unsigned each = 5; each < 60; each++) {
+		char scenario[160];
+		int left = 1;
+
+		snprintf(scenario, sizeof(scenario),
+		         "i2c speed 400 combine any\nchip DS2482-800 0x18\nchip DS2482-100 0x1c\n"
+		         "at 0s refuse-data 0x1c each %u\n",
+		         each);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(0, ds_try_open(scenario, ""), ds.why);
+		later += ds.master->ops->channels(ds.master) == 8;
+		ds_event("end refuse-data 0x1c");
+		for (unsigned i = 0; i < 2 && left == 1; i++)
+			left = ds.master->ops->grow(ds.master, ds.why, sizeof(ds.why));
+		TEST_ASSERT_EQUAL_INT(0, left);
+		TEST_ASSERT_EQUAL_UINT(9, ds.master->ops->channels(ds.master));
+		tearDown();
+	}
+	TEST_ASSERT_GREATER_THAN_UINT(0, later);
+}
+
 /* The chip saw it (SD), and the line is high again when it is asked. */
 static void test_a_short_that_ends_within_the_reset_is_a_short(void)
 {
@@ -392,6 +417,7 @@ int main(void)
 	RUN_TEST(test_a_chip_that_takes_no_configuration_or_channel_is_not_used);
 	RUN_TEST(test_one_refused_byte_does_not_fail_the_reset_of_a_chip);
 	RUN_TEST(test_one_refused_byte_makes_no_other_chip_of_one_that_is_opened);
+	RUN_TEST(test_a_second_chip_that_is_disturbed_at_the_start_is_not_left_out);
 	RUN_TEST(test_a_short_that_ends_within_the_reset_is_a_short);
 	RUN_TEST(test_a_process_that_was_not_scheduled_takes_no_chip_for_stuck);
 	RUN_TEST(test_a_missing_chip_is_taken_when_it_is_there_again);
