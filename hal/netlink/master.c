@@ -11,6 +11,8 @@
 #include "hal/netlink/search.h"
 #include "hal/w1/master.h"
 
+#define FIRST_TRIES 3 /* lists that are asked for until a kernel is said not to answer */
+
 /* --- One master as a link -------------------------------------------------------------------- */
 
 /*
@@ -145,8 +147,10 @@ static const struct link_facts facts;
 static int add_links(struct w1_netlink *netlink)
 {
 	uint32_t numbers[NATIVE_CHANNELS], only = w1_master_only(netlink->sysfs);
-	int n = w1_talk_masters(&netlink->talk, numbers, NATIVE_CHANNELS);
+	int n = -ETIMEDOUT;
 
+	for (unsigned i = 0; i < (netlink->answered ? 1 : FIRST_TRIES) && n == -ETIMEDOUT; i++)
+		n = w1_talk_masters(&netlink->talk, numbers, NATIVE_CHANNELS);
 	for (int i = 0; i < n && netlink->count < NATIVE_CHANNELS; i++) {
 		if (has_link(netlink, numbers[i]) || (only && numbers[i] != only))
 			continue;

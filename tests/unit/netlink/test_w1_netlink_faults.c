@@ -248,6 +248,16 @@ static void test_files_serve_where_the_kernel_does_not_answer(void)
 	TEST_ASSERT_TRUE(nl_told(BUS_NOTE, "CONFIG_W1_CON"));
 }
 
+static void test_one_lost_answer_at_the_start_is_no_refusal(void)
+{
+	nl_masters(1);
+	struct sim_slave *warm = nl_thermometer(0, 1, 21.0625);
+	w1_core.silent = 1;
+	nl_start();
+	nl_reads(warm, "temperature", "     21.0625");
+	TEST_ASSERT_FALSE(nl_told(BUS_NOTE, "served by files"));
+}
+
 /* A kernel that has answered can: silence when the target is opened again is a passing fault. */
 static void test_a_kernel_that_has_answered_is_asked_again_by_netlink(void)
 {
@@ -312,6 +322,7 @@ int main(void)
 	RUN_TEST(test_files_serve_where_netlink_is_refused);
 	RUN_TEST(test_a_passing_fault_is_no_refusal);
 	RUN_TEST(test_files_serve_where_the_kernel_does_not_answer);
+	RUN_TEST(test_one_lost_answer_at_the_start_is_no_refusal);
 	RUN_TEST(test_a_kernel_that_has_answered_is_asked_again_by_netlink);
 	RUN_TEST(test_without_a_master_the_target_is_down_until_one_comes);
 	RUN_TEST(test_a_target_is_followed_by_what_w1_takes);
