@@ -40,7 +40,9 @@ static int exchange(struct serial_master *master, unsigned baud, const uint8_t *
 
 /*
  * The first four bits are the pulse itself, which is low whatever answers: with others the speed is
- * wrong, or the byte is not an echo. A slave holds the line low somewhere in the rest.
+ * wrong, or the byte is not an echo. A slave holds the line low somewhere in the rest. At a speed
+ * that another program has set, nobody takes it for a reset, and the echo is right: it is set again
+ * where nobody answers.
  */
 static int reset(struct serial_master *master)
 {
@@ -56,7 +58,10 @@ static int reset(struct serial_master *master)
 		return -ECOMM;
 	if (in & 0x0F)
 		return -EIO;
-	return in == RESET ? -EHOSTDOWN : 0;
+	if (in != RESET)
+		return 0;
+	master->baud = 0;
+	return -EHOSTDOWN;
 }
 
 static int slots(struct serial_master *master, const uint8_t *line, uint8_t *back, size_t n)

@@ -51,6 +51,17 @@ static void test_a_short_and_nobody_are_told_apart(void)
 	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
 }
 
+/* At the speed of slots a reset pulse is none, and its echo is that of a wire without devices. */
+static void test_a_speed_that_another_program_has_set_hides_the_devices_once(void)
+{
+	serial_start(SIM_PASSIVE, &serial_passive, house);
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	serial.baud = 115200;
+	TEST_ASSERT_EQUAL_INT(0, part_reset(serial.wire));
+	TEST_ASSERT_EQUAL_INT(1, part_reset(serial.wire));
+	serial_check("t");
+}
+
 static void test_an_echo_of_what_a_busy_machine_sent_late_is_not_taken_for_a_missing_one(void)
 {
 	serial_start(SIM_PASSIVE, &serial_passive, house);
@@ -327,6 +338,7 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_a_reading_is_a_reset_and_slots);
+	RUN_TEST(test_a_speed_that_another_program_has_set_hides_the_devices_once);
 	RUN_TEST(test_an_echo_of_what_a_busy_machine_sent_late_is_not_taken_for_a_missing_one);
 	RUN_TEST(test_a_short_and_nobody_are_told_apart);
 	RUN_TEST(test_a_search_is_one_exchange_for_each_bit_and_one_in_all_for_a_known_id);
